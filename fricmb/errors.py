@@ -12,7 +12,7 @@ class FricmbError(Exception):
 
 
 class SceneError(FricmbError, ValueError):
-    """A declaration that cannot be: names the part, the argument, the value and what is accepted."""
+    """A declaration that is not accepted; the message names the part, the argument, the value and what is accepted."""
 
 
 class ArgumentError(FricmbError, ValueError):
@@ -51,7 +51,7 @@ class CallError(SceneError, TypeError):
 
 
 class _Stopped(BaseException):
-    """A run that has not reached its end: ``partial`` is put together when it is first asked for, by ``later``."""
+    """A run that has not reached its end: ``later`` assembles ``partial`` when it is first read."""
 
     def __init__(
         self, message: str, *, t: float, reason: str, partial: Any = None, later: Callable[[], Any] | None = None
@@ -88,7 +88,7 @@ class IntegrationError(_Stopped, FricmbError):
     reason : str
         The condition that failed.
     partial : Solution or None
-        The run up to the failure; put together when it is first asked for.
+        The run up to the failure; assembled when it is first read.
     """
 
 
@@ -102,7 +102,7 @@ class Interrupted(_Stopped, KeyboardInterrupt):
     reason : str
         "interrupted".
     partial : Solution or None
-        The run up to there; put together when it is first asked for.
+        The run up to there; assembled when it is first read.
     """
 
 

@@ -23,7 +23,7 @@ def band_brake(
     lever: float = 0.5,
     damping: float = 20.0,
 ) -> fm.Scene:
-    """Band brake: a drum turns in a band that is held at one end and pulled at the other; it serves itself one way.
+    """Band brake: a drum turns in a band held at one end and pulled at the other; self-energising one way.
 
     SI units.
 
@@ -32,9 +32,9 @@ def band_brake(
     inertia, radius : float
         Of the drum.
     speed : float
-        Of the drum at the start; > 0 drags the band off its holder, which bears more: the brake serves itself.
+        Of the drum at the start; > 0 drags the band off its holder, which bears more: the brake is self-energising.
     angle : float
-        By which the band is wound around the drum.
+        Angle of wrap of the band on the drum.
     mu : float
         Coefficient of friction of the band.
     pull : float

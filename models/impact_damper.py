@@ -34,7 +34,7 @@ def impact_damper(
         On the box, ``force sin(frequency t)``.
     loose_mass : float
     gap : float
-        Way of the loose mass in the box.
+        Free travel of the loose mass in the box.
     restitution : float
         Of the walls, from 0 to 1.
 

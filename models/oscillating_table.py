@@ -21,7 +21,7 @@ def oscillating_table(
     restitution: float = 0.8,
     gravity: float = 9.81,
 ) -> fm.Scene:
-    """Ball on an oscillating table: caught in step with it, it bounces once a period; harder shaken it loses step.
+    """Ball on an oscillating table: it settles to one bounce a period; shaken harder, it loses step.
 
     SI units.
 

@@ -62,8 +62,8 @@ def woodpecker(
     C. Glocker, Dynamik von Starrkorpersystemen mit Reibung und Stossen, VDI 1995; R. I. Leine, C. Glocker, D. H. van
     Campen, Nonlinear dynamics and modeling of various wooden toys with impact and friction, J. Vib. Control 9 (2003)
     25-78.  Height and both angles are small, kinematics linear: two rigid modes, and one of the spring.  The default
-    values, those of the literature, have a cycle of 0.1460 s in which it drops 19.4 mm; what is left of a deviation one
-    period later is -0.84 of it.
+    values, those of the literature, have a cycle of 0.1460 s in which it drops 19.4 mm; a deviation is multiplied by
+    -0.84 each period.
     """
     check_positive("woodpecker", mass=mass, inertia=inertia, sleeve_mass=sleeve_mass, sleeve_inertia=sleeve_inertia)
     check_positive("woodpecker", stiffness=stiffness)

@@ -67,10 +67,10 @@ def fit(
         Standard errors of the measurements, one for all, or by name a number or (n,).  Default: the same for all values
         of a quantity, found from the residuals; several quantities then count by their extents.
     priors : dict, optional
-        What is known before, ``{"sole.law.mu_k": (mean, standard deviation)}``; needs ``sigma``.
+        Prior knowledge, ``{"sole.law.mu_k": (mean, standard deviation)}``; needs ``sigma``.
     offset : bool or names
-        Signals whose zero is not known, True for all: a constant that is added to each is found as well, ``offsets`` of
-        the result.  Load cells drift, and displacements are measured from somewhere.
+        Signals whose zero is not known, True for all: a constant offset of each is found as well (``offsets`` of the
+        result).  Load cells drift, and displacements are measured from an arbitrary zero.
     loss : str
         "linear", or one of those of :func:`scipy.optimize.least_squares` that let outliers count less, with ``sigma``.
     starts : int
@@ -97,11 +97,12 @@ def fit(
 
     Notes
     -----
-    :func:`scipy.optimize.least_squares` within the bounds.  Where places, speeds or accelerations say the whole motion,
-    it starts from a regression: the motion, put into the equations, gives masses, stiffnesses and friction without a
-    run; the first guess stays where it explains more.  Derivatives are exact through transitions, or differences where
-    a run takes so little time that these are quicker; those of accelerations and forces always are.  The covariance is
-    that of the linearised problem, ``s^2 (J^T J)^-1`` by exact derivatives; with ``sigma`` given s is 1.
+    :func:`scipy.optimize.least_squares` within the bounds.  Where measured positions, velocities or accelerations
+    determine the whole motion, the fit starts from a regression: the motion, put into the equations, gives masses,
+    stiffnesses and friction without a run; the first guess is kept where it explains more.  Derivatives are exact
+    through transitions, or finite differences where runs are so short that these are quicker; those of accelerations
+    and forces are always finite differences.  The covariance is that of the linearised problem, ``s^2 (J^T J)^-1`` by
+    exact derivatives; with ``sigma`` given s is 1.
     """
     check_scene(scene)
     _check_search(loss, starts)

@@ -39,13 +39,13 @@ class Fit:
         The run with them at the measured times; None where only periods were measured.
     measured : tuple of Measured
     residuals : dict of str to (n,)
-        Prediction less measurement, by what was measured.
+        Prediction less measurement, by name of the quantity.
     notes : tuple of str
-        What has to be known: parameters at a bound, or that cannot be told apart.
+        Warnings: parameters at a bound, or that the data cannot tell apart.
     runs : int
-        Number of runs that it took.
+        Number of runs made.
     offsets : dict of str to float
-        What was measured more than there was, by signal: constants that were found beside the parameters.
+        Zero of each signal (measured less true), found beside the parameters.
     """
 
     values: Mapping[str, float]

@@ -65,23 +65,23 @@ def simulate(
         A solution to go on from, with its positions, velocities, law states, contact modes, driven positions and time;
         or ``{"position": {"pad.x": 1.0}, "velocity": {...}, "state": {"lining": z}}`` in place of what the scene says.
     observe : names, optional
-        Degrees of freedom, points and contacts that are asked for: what cannot influence them may be left out.
+        Degrees of freedom, points and contacts of interest: parts that cannot influence them may be left out.
     step : float, optional
-        Step of a method with a fixed one.
+        Step of a method with fixed steps.
     max_step : float, optional
         Longest step of a method that chooses its own; default: as long as the motion and the functions of time in the
         scene allow.
     events : dict, optional
         Expressions by name, whose changes of sign are located and stand in ``sol.events`` with the kind "event":
         ``{"passes": fm.coordinate("mass.x") - 0.5}``, in ``fm.t``, ``fm.coordinate``, ``fm.speed`` and parameters, or a
-        signal of the solution and a number, ``("sole.force", 2.0)``.  What only comes up to 0 within errors does not
-        pass it.
+        signal of the solution and a number, ``("sole.force", 2.0)``.  A value that only touches 0 within errors does
+        not change sign.
     terminal : names, optional
-        Those of ``events`` at the first of which the run ends.
+        Names out of ``events``: the run ends at the first of them.
     progress : bool
         Show a bar on the terminal.
     dense : bool, optional
-        Whether to keep what lies between the times of the solution (``sol(t)``, ``sol.at``).  Default: yes, unless
+        Whether to keep the motion between the times of the solution (``sol(t)``, ``sol.at``).  Default: yes, unless
         ``t_eval`` is given and the run is so long that this would take more than some 60 megabytes.
     chunk : float, optional
         Time from one call of ``on_chunk`` to the next; default: a hundredth of the run.

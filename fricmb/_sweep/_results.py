@@ -26,9 +26,9 @@ RESULT = "result"
 class SweepResults(list[Any]):
     """Results of :func:`fricmb.sweep`, a list in the order of the runs, that knows the values of each.
 
-    Entries are solutions, or what ``reduce`` made of them; of a run that failed its IntegrationError, of one that was
-    not made None.  A *measure* is a number of each run: a function of its result, or the name of a number where
-    ``reduce`` returned a dict; where it returned a number, that is the measure and need not be named.
+    Entries are solutions, or what ``reduce`` returned; an IntegrationError for a run that failed, None for one that was
+    not made.  A *measure* is a number of each run: a function of its result, or the name of a number where ``reduce``
+    returned a dict; where it returned a number, that is the measure and need not be named.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class SweepResults(list[Any]):
 
     @property
     def failed(self) -> tuple[int, ...]:
-        """Places of the runs that have no result."""
+        """Indices of the runs without a result."""
         return tuple(i for i, result in enumerate(self) if _is_missing(result))
 
     def value(self, name: str) -> NDArray[np.float64]:
@@ -95,7 +95,7 @@ class SweepResults(list[Any]):
         Raises
         ------
         SceneError
-            Where what is found is no number.
+            If the measure of a run is not a number.
         UnknownNameError
             For a name that the results do not have.
         """
@@ -110,7 +110,7 @@ class SweepResults(list[Any]):
         return () if first is None or np.ndim(first) or not _is_number(first) else (RESULT,)
 
     def to_pandas(self, **measures: Measure) -> pandas.DataFrame:
-        """A row a run: the values of its parameters, measures, and what went wrong where something did.
+        """A table with one row for each run: parameter values, measures, and the error of a run that failed.
 
         Parameters
         ----------
@@ -161,7 +161,7 @@ class SweepResults(list[Any]):
         Raises
         ------
         SceneError
-            Where two runs stand at the same place.
+            If two runs have the same values.
         """
         names = self.parameters if over is None else tuple(over)
         if not names:
@@ -194,7 +194,7 @@ class SweepResults(list[Any]):
         Raises
         ------
         SceneError
-            For more than two parameters, or runs that stand at the same place.
+            For more than two parameters, or runs with the same values.
         """
     def _asked(self, measures: Mapping[str, Measure]) -> dict[str, Measure]:
         return dict(measures) if measures else {name: name for name in self.measures()}

@@ -52,20 +52,20 @@ def sweep(
         Number of processes (1: in this one; default: the cores), or what runs them.  A function or a law that is
         defined in a script can be sent to processes that are forked, or that import the script.  With "threads", as
         many as there are cores, nothing is sent: ``reduce`` and laws may be defined anywhere, and solutions stay where
-        they were made; what is done in Python, a third of a short run, is done by one at a time.
+        they were made; the part of a run in Python, a third of a short one, is done by one thread at a time.
     progress : bool
         Show a bar on the terminal.
     store : path, optional
         A folder that keeps each result as it comes in.  The same sweep with the same store goes on where it stopped;
         a run is made again where scene, values, options, ``reduce``, a law, or a function or global that these use has
-        changed.  What cannot be followed (a file that ``reduce`` reads) is not seen; what can be seen to be so is said.
-        Several sweeps may write to it at once.  Numbers, words, arrays, and lists and dicts of them are kept as data,
-        other results as pickles, which are read only where nobody else can write.
+        changed.  Changes that cannot be followed, as of a file that ``reduce`` reads, go unnoticed; a warning is given
+        where such a use is seen.  Several sweeps may write to it at once.  Numbers, words, arrays, and lists and dicts
+        of them are kept as data, other results as pickles, which are read only where nobody else can write.
     parameters : dict, optional
         Values that all runs share; those of a run win.
     run_limit : float, optional
         Seconds that a run may take with its ``reduce``; then its process is ended, and an IntegrationError stands in
-        its place.  A process that dies costs its run alone, too.
+        its place.  Likewise a process that dies costs its own run alone.
     **options
         As :func:`fricmb.simulate`.
 
@@ -80,8 +80,8 @@ def sweep(
     SceneError
         For a wrong name or value, before anything is run.
     KeyboardInterrupt
-        After Ctrl-C, SIGTERM or SIGHUP, once the runs under way are done (at once after a second one).  The
-        ``results`` of this and of any other error that ends the sweep are those that were made, None for others.
+        After Ctrl-C, SIGTERM or SIGHUP, once the runs under way are done (at once after a second one).  The attribute
+        ``results`` of this, and of any other error that ends the sweep, holds those made so far, and None for others.
     """
     check_scene(scene)
     check_options("sweep", options, simulate, "t_end", "parameters")

@@ -21,8 +21,8 @@ class Crossing:
     value : float
         Critical value of the parameter.
     kind : {"flutter", "self-excitation", "divergence"}
-        Growing oscillation; that of a single degree of freedom, which takes friction that falls with speed (flutter
-        takes two); growth without one.
+        Flutter: growing oscillation of two coupled modes.  Self-excitation: that of a single one, under friction that
+        falls with speed.  Divergence: growth without oscillation.
     frequency : float
         Angular frequency there; 0 for divergence.
     mode : int

@@ -58,7 +58,7 @@ class Eigenvalues:
     critical : tuple of Crossing
         Where modes become unstable or stable again, in rising order of the parameter.
     fine_values : (n_fine,)
-        The values again with those between them at which the modes were looked at, in the same direction: for curves.
+        ``values`` with the intermediate ones at which modes were computed, in the same direction: for curves.
     fine_eigenvalues : (n_fine, n_modes) complex
         The same modes there.
     units : Units
@@ -135,9 +135,9 @@ def complex_eigenvalues(
 
     At each value the equilibrium is found (:func:`steady_sliding`), the scene linearised there with its analytic
     Jacobians (the coupling of the normal force into friction, the slope of the coefficient, the turning of the force in
-    two dimensions, law states), and the modes are followed by the likeness of their shapes, with steps in between where
-    they change much.  Critical values between those given are found to round-off: as a root of the growth rate, or of
-    the squared distance of two eigenvalues where two undamped modes meet.
+    two dimensions, law states), and modes are followed by the similarity of their shapes, with intermediate values
+    where these change much.  Critical values between those given are found to round-off: as a root of the growth rate,
+    or of the squared distance of two eigenvalues where two undamped modes meet.
 
     Parameters
     ----------
@@ -165,9 +165,9 @@ def complex_eigenvalues(
 
     Notes
     -----
-    Critical values do not hang on that following: growing eigenvalues are counted, at the given values and so often
-    between them that they are counted at 48 places at least, and spans are halved until their ends differ by one
-    eigenvalue or one pair.  A window of instability narrower than that is not seen.
+    Critical values do not depend on the following of modes: growing eigenvalues are counted at the given values and
+    between them, at 48 values or more, and spans are halved until their ends differ by one eigenvalue or one pair.  A
+    window of instability narrower than that is not seen.
     """
     who = "complex_eigenvalues"
     checked_scene(who, scene)

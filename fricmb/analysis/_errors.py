@@ -24,7 +24,7 @@ class AnalysisError(FricmbError, ValueError):
 
 
 class AliasingWarning(UserWarning):
-    """Samples are too far apart for what the signal holds: power above pi/dt appears at frequencies where it is not."""
+    """Samples are too far apart for the signal: power above pi/dt appears at lower frequencies."""
 
 
 def refuse(who: str, name: str, value: object, accepted: str) -> NoReturn:

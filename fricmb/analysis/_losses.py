@@ -100,7 +100,7 @@ class EnergyLedger:
 
 @answers
 def energy_ledger(sol: Solution) -> EnergyLedger:
-    """Who lost how much, where.
+    """Energy losses of a run, part by part and phase by phase.
 
     Parameters
     ----------

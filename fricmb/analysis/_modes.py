@@ -53,7 +53,7 @@ class ModalEnergy:
 
     @property
     def squealing(self) -> int:
-        """The vibrating mode that friction brought most energy to."""
+        """Index of the vibrating mode to which friction brought most energy."""
         fed = np.where(self.omega > 0.0, self.friction[:, -1], -np.inf)
         if not np.isfinite(fed).any():
             raise AnalysisError("modal_energy: no mode vibrates")

@@ -24,7 +24,7 @@ class NaturalModes:
     Attributes
     ----------
     frequencies : (n,)
-        Angular frequencies; 0 for a rigid motion, and for one that the stiffness drives away.
+        Angular frequencies; 0 for a rigid motion, and for one of negative stiffness.
     damping_ratios : (n,)
         Parts of critical damping, from the diagonal of the modal damping matrix; 0 for rigid motions.
     shapes : (n_dof, n)

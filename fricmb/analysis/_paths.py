@@ -216,7 +216,7 @@ def cycle(
 
 @answers
 def settling_distance(law: FrictionLaw, normal_force: float = 1.0) -> float:
-    """Distance of slip over which friction comes to its steady value (to a factor), by sliding from rest."""
+    """Slip distance (its order of magnitude) over which friction settles to its steady value, sliding from rest."""
     normal_force = _load("settling_distance", normal_force)
     d, speed = checked_law("settling_distance", law).dimensions[0], 1e-3
     v = np.zeros(d)

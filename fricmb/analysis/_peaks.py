@@ -120,8 +120,8 @@ def spectral_peaks(
     -----
     The standard error is empirical: the peak nearest in each part (nearer than half the way to the next one), the
     standard deviation of its place over the parts, and a factor 1/2, since the record is four times as long as a part.
-    For a signal that changes while it lasts, such as a braking, it holds that change, too.  What it cannot hold is a
-    bias that all parts share: autoregressive peaks in noise move by several standard errors if the order is low.
+    For a signal that changes while it lasts, such as a braking, it includes that change.  It cannot include a bias that
+    all parts share: autoregressive peaks in noise move by several standard errors if the order is low.
     """
     samples = checked_samples(_WHO, x, dt)
     checked_integer(_WHO, "parts", parts, 2, 50)

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Poincare:
-    """Where a motion meets a section.
+    """Points at which a motion meets a section.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ def poincare_section(
     rising: bool | None = True,
     discard: float = 0.5,
 ) -> Poincare:
-    """Where a run passes a section, or where it is once a period.
+    """Points of a run on a section, or once a period.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def _passes(sol: Solution, name: str, level: float, begin: float, rising: bool |
 
 @dataclass(frozen=True, kw_only=True)
 class BifurcationDiagram:
-    """What runs settle to, over a parameter.
+    """Settled motion of runs over a parameter: a signal at the passes of a section.
 
     Attributes
     ----------
@@ -154,7 +154,7 @@ class BifurcationDiagram:
     failed: tuple[tuple[float, str], ...]
 
     def count(self, tolerance: float = 1e-4) -> Floats:
-        """Number of different points (n_values,), those within a part of the whole extent being the same."""
+        """Number of different points (n_values,); those closer than ``tolerance`` of the whole extent count as one."""
         every = np.concatenate([*self.points, np.zeros(0)])
         near = tolerance * float(np.ptp(every)) if every.size else 0.0
         return np.array([0 if not p.size else 1 + int((np.diff(np.sort(p)) > near).sum()) for p in self.points])
@@ -196,7 +196,7 @@ def bifurcation_diagram(
     workers: Any = None,
     **options: Any,
 ) -> BifurcationDiagram:
-    """What plain runs settle to over a parameter: for motion that has no branch of cycles.
+    """Settled motion of plain runs over a parameter, for motion that has no branch of cycles.
 
     Parameters
     ----------

@@ -59,7 +59,7 @@ def compare_regimes(
     scene: Scene, contact: str, *, v_reg: float, stiffness: float, t_end: float, v_s: float | None = None,
     damping: float = 0.0, points: int = 4001, **options: Any,
 ) -> tuple[Regime, Regime, Regime]:  # fmt: skip
-    """Run a scene with its set-valued law, with that regularised, and with that on bristles.
+    """Run a scene with a set-valued law, with its regularised form, and with its bristle form.
 
     Parameters
     ----------

@@ -43,7 +43,7 @@ Measure = str | Callable[["Solution"], float]
 
 @dataclass(frozen=True, kw_only=True)
 class FrequencyResponse:
-    """What a driven scene settles to.
+    """Settled amplitude of a driven scene over a parameter, upwards and downwards.
 
     Attributes
     ----------

@@ -40,7 +40,7 @@ class Samples:
     x : (n,)
     dt : float
     folded : float
-        Share of the signal's power, mean taken off, that lies above pi/dt and is folded to where it is not.
+        Share of the signal's power, without its mean, that lies above pi/dt and is folded to lower frequencies.
     short : float
         Share of the phases between transitions that are shorter than two samples.
     """

@@ -30,8 +30,9 @@ def maximum_entropy_spectrum(
     order : int or {"FPE", "AIC", "MDL"}, optional
         Order of the autoregressive model, 1 to n-1, or the criterion that chooses it among orders up to 300 or a third
         of n, whichever is smaller: Akaike's final prediction error, Akaike's information criterion, Rissanen's minimum
-        description length.  Default: "FPE".  More resolves closer peaks; too much splits one peak in two.  Signals
-        without noise, as runs are, often have no best order: the criteria then take one near the largest allowed.
+        description length.  Default: "FPE".  A higher order resolves closer peaks; too high a one splits a peak in two.
+        Signals without noise, as runs are, often have no best order: the criteria then take one near the largest
+        allowed.
     omega : (n_omega,) array_like, optional
         Angular frequencies from 0 to pi/dt.  Default: an equidistant grid over that range, eight times as fine as the
         signal's own resolution, and more points at peaks that are narrower than that.

@@ -36,7 +36,8 @@ class SteadySliding:
     held : tuple of str
         Degrees of freedom whose speed was prescribed.
     acceleration : dict of str to float
-        What the unbalanced forces would give those that are held: how steady the sliding is.
+        Acceleration that the unbalanced forces would give to those that are held: a measure of how steady the sliding
+        is.
     """
 
     scene: Any

@@ -22,7 +22,7 @@ COUNTED = 2000
 
 @dataclass(frozen=True, kw_only=True)
 class Check:
-    """What :meth:`FEModel.check` found.
+    """Result of :meth:`FEModel.check`.
 
     Attributes
     ----------

@@ -12,7 +12,7 @@ from fricmb.fe._model import FEModel, Ints
 
 
 def join(first: FEModel, *others: FEModel, name: str | None = None) -> FEModel:
-    """One model of several that share nodes: equal (node, dof) move together.
+    """Join models that share nodes into one: equal (node, dof) move together.
 
     Parameters
     ----------

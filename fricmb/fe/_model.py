@@ -64,7 +64,7 @@ class FEModel:
     n : int
         Free degrees of freedom.
     notes : tuple of str
-        What was completed, taken apart, or taken out.
+        Entries that were completed, taken apart, or taken out.
 
     Raises
     ------
@@ -288,14 +288,14 @@ class FEModel:
         return np.sqrt(found.omega2)
 
     def check(self, modes: Any = None, *, tolerance: float = 1e-3) -> Check:
-        """What the matrices are: rigid modes, massless degrees of freedom, asymmetry, precision, mass.
+        """Examine the matrices: rigid modes, massless degrees of freedom, asymmetry, precision, mass.
 
         Parameters
         ----------
         modes : path, Modes or (frequencies, shapes), optional
             Modes of the same model, angular frequencies (k,) and shapes (n, k), or a file that has them.
         tolerance : float
-            Most that ``|K phi - omega^2 M phi|`` may be of ``|K phi|``.
+            Largest ``|K phi - omega^2 M phi|`` accepted, as a share of ``|K phi|``.
 
         Returns
         -------
@@ -311,7 +311,7 @@ class FEModel:
         return check(self, modes, tolerance)
 
     def symmetrised(self, name: str = "K_skew") -> FEModel:
-        """With the symmetric part of K, and the rest, as friction leaves it, as a part of that name."""
+        """A copy with the symmetric part of K; the skew rest, such as friction leaves, becomes the part ``name``."""
         rest = self.K - symmetric_part(self.K)
         return replace(self, K=symmetric_part(self.K), parts={**self.parts, name: rest}, triangles={name: "full"})
 

@@ -45,7 +45,7 @@ def read(
     units: str | None = None,
     name: str | None = None,
 ) -> FEModel:
-    """Matrices as a finite element program wrote them.
+    """Read matrices that a finite element program wrote.
 
     Parameters
     ----------

@@ -131,7 +131,7 @@ class FrictionLaw(Regimes, Declaration):
 
     @classmethod
     def example(cls) -> Self:
-        """A typical instance: each required field gets 0.5 unless a law knows better."""
+        """A typical instance: each required field gets 0.5 unless a law states other values."""
         return cls(**required_numbers(cls))
 
     # -- facts --------------------------------------------------------------------------------------------------

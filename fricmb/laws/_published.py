@@ -6,7 +6,7 @@ from typing import Any
 
 
 def published(group: str) -> tuple[dict[str, Any], dict[str, str]]:
-    """What installed packages publish under an entry point group: name -> object, and name -> why it cannot be used.
+    """Objects that installed packages publish under an entry point group, by name, and why others cannot be used.
 
     Groups are ``fricmb.friction_laws`` (subclasses of FrictionLaw) and ``fricmb.models`` (functions that return a
     Scene).

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Comparison:
-    """What :meth:`ModalBody.compare` found.
+    """Result of :meth:`ModalBody.compare`.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Comparison:
     responses : tuple of (Frf, array)
         Measured ones and those of the body at the same frequencies.
     r2 : tuple of float
-        Of each response the share of its variation, in decibels, that the body has.
+        Coefficient of determination R^2 of each response, in decibels.
     """
 
     mac: Floats

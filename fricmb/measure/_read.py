@@ -37,7 +37,7 @@ def read(
     path: str | PathLike[str], *, format: str | None = None, step: float | None = None, start: float = 0.0,
     time: str | None = None,
 ) -> Measured:  # fmt: skip
-    """Signals, frequency responses and modes, with their points and units.
+    """Read signals, frequency responses and modes from a file, with their points and units.
 
     Parameters
     ----------

@@ -80,7 +80,7 @@ class Frf:
 
     @property
     def is_driving_point(self) -> bool:
-        """Whether motion and force are said to be of one place and direction."""
+        """Whether motion and force belong to one node and direction."""
         return self.node == self.reference != 0 and self.axis.lstrip("-") == self.reference_axis.lstrip("-") != ""
 
     def receptance(self, kind: str | None = None) -> Complexes:
@@ -102,7 +102,8 @@ class Modes:
     damping_ratios : (k,)
     nodes : (p,) int
     shapes : (k, p, d)
-        Displacements along x, y, z, and rotations where d is 6; complex where the file has them so.  nan: not said.
+        Displacements along x, y, z, and rotations where d is 6; complex where the file has them so.  nan: not in the
+        file.
     masses : (k,)
         Modal masses; nan where the file has none, or 0.
     round_off : float
@@ -159,7 +160,7 @@ class Modes:
         return self.shapes[:, found[0], ["xyz".index(letter) for letter in axes]].T
 
     def at_labels(self, labels: NDArray[np.int64]) -> tuple[NDArray[np.inexact], int]:
-        """Shapes (n, k) in an order of (node, dof), and of how many of these nothing is known."""
+        """Shapes (n, k) in a given order of (node, dof), and the number of rows of which nothing is known."""
         place = {int(node): i for i, node in enumerate(self.nodes)}
         found = np.full((len(labels), self.frequencies.size), np.nan, dtype=self.shapes.dtype)
         for i, (node, dof) in enumerate(labels.tolist()):
@@ -182,7 +183,7 @@ class Measured:
     lines : dict of str to tuple of int
         Nodes that are drawn as lines, 0 lifting the pen.
     units : dict of str to float
-        What one unit of SI is in those of the file: ``{"length": 1000.0}`` for mm.
+        One SI unit in the units of the file: ``{"length": 1000.0}`` for mm.
     notes : tuple of str
     """
 

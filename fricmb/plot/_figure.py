@@ -35,7 +35,7 @@ def new_picture(width: float, height: float) -> Picture:
 def show(*figures: Figure) -> None:
     """Show figures in windows, and wait until they are closed; in a notebook, below the cell.
 
-    ``plt.show()`` does the same with figures that pyplot has made.  Those of fricmb it does not know.
+    ``plt.show()`` does the same with figures that pyplot has made.  It does not know those of fricmb.
 
     Parameters
     ----------

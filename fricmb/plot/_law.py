@@ -62,7 +62,7 @@ def law_figure(law: FrictionLaw, *, normal_force: float = 1.0, units: Units | No
 def law(
     law: FrictionLaw, *, normal_force: float = 1.0, units: Units | None = None, ax: Axes | None = None
 ) -> Figure:
-    """The one panel that tells most of a law: hysteresis loops of a law with memory, else the coefficient over speed.
+    """The most telling panel of a law: hysteresis loops of a law with memory, else the coefficient over speed.
 
     Parameters
     ----------

@@ -42,7 +42,7 @@ class SolutionPlots(SignalPlots):
 
     @cached_property
     def curves(self) -> Solution:
-        """The solution at the times that are drawn where all of it is."""
+        """The solution at the times that a plot of the whole run draws."""
         return refined(self.sol)
 
     @drawn
@@ -65,10 +65,10 @@ class SolutionPlots(SignalPlots):
         t_start, t_end : float, optional
             Part of the run.
         zoom : bool or (float, float), optional
-            A few swings, or this stretch of time, enlarged beside each panel; default: where there are more swings than
+            A few cycles, or this stretch of time, enlarged beside each panel; default: where there are more cycles than
             can be told apart.
         ax : Axes, optional
-            Takes all of them.
+            Axes that take all curves.
         """
         found = panels_of(self.sol, names, self.units, rate=True, one=ax is not None)
         return self._over_time(found, t_start, t_end, zoom, ax)
@@ -154,7 +154,7 @@ class SolutionPlots(SignalPlots):
     ) -> Figure:
         """Force over displacement of a contact, joint or element; the area of the loop is the energy lost.
 
-        The force is that which resists; displacements of contacts count from the start of what is drawn.
+        The force drawn is the one that resists; displacements of contacts count from the start of the part drawn.
 
         Parameters
         ----------
@@ -181,8 +181,8 @@ class SolutionPlots(SignalPlots):
     ) -> Figure:
         """Phase plane: velocity over position of a dof or point; of a contact, the plane of its relative velocity.
 
-        For a contact in one dimension the friction force is drawn over the relative velocity.  Of more swings than can
-        be told apart the last ones stand out.
+        For a contact in one dimension the friction force is drawn over the relative velocity.  Where there are more
+        cycles than can be told apart, the last ones stand out.
         """
         span = span_of(self.sol, t_start, t_end)
         (panel,) = panels(1, ax, title=self._name, height=5.0)
@@ -268,9 +268,10 @@ class SolutionPlots(SignalPlots):
     def energy(
         self, *, t_start: float | None = None, t_end: float | None = None, ax: Axes | None = None
     ) -> Figure:
-        """Where the energy is and where it went; the ledger's residual below, unless ``ax`` is given.
+        """Stored energies, losses and input over time; the ledger's residual below, unless ``ax`` is given.
 
-        The residual is drawn from the dense output: between the steps it can be larger than at them, and both are said.
+        The residual is drawn from the dense output: between the steps it can be larger than at them, and both values
+        are given.
         """
         span = span_of(self.sol, t_start, t_end)
         seen = refined(self.sol, *span)

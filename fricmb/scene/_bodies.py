@@ -64,8 +64,8 @@ class Body(PartEnd):
     name : str
         Unique in a scene, without dots.
     mass : float
-        > 0; 0 for a slider between one spring and one contact under Coulomb's law (a Jenkins element), and for a body
-        on springs whose velocity dampers or viscous laws determine (quasi-dynamic blocks): runs alone take it.
+        > 0.  Only runs accept 0: for a slider between one spring and one contact under Coulomb's law (a Jenkins
+        element), and for a body on springs whose velocity dampers or viscous laws determine (quasi-dynamic blocks).
     axes : str
         Any of "x", "y", "z"; each is a degree of freedom, named ``"name.x"``.
     position, velocity : dict of str to float
@@ -110,7 +110,7 @@ class Body(PartEnd):
 
     @property
     def letters(self) -> tuple[str, ...]:
-        """Its axes."""
+        """Letters of its axes."""
         return letters_in(self.axes)
 
     def has_axis(self, letter: str) -> bool:
@@ -119,11 +119,11 @@ class Body(PartEnd):
 
     @property
     def movable(self) -> bool:
-        """Always."""
+        """True: forces move it."""
         return True
 
     def moves_like(self, other: object) -> bool:
-        """Whatever its numbers, with the same name and axes."""
+        """Whether the other has the same name and axes, whatever its numbers."""
         return (
             isinstance(other, Body) and type(self) is type(other) is Body
             and (self.name, self.axes) == (other.name, other.axes)
@@ -196,11 +196,11 @@ class Driven(PartEnd):
 
     @property
     def movable(self) -> bool:
-        """Not by forces."""
+        """False: forces do not move it."""
         return False
 
     def moves_like(self, other: object) -> bool:
-        """With the same name and, in the same numbers, the same motion."""
+        """Whether the other has the same name and the same motion in the same numbers."""
         fields = ("name", "velocity", "position", "axes")
         return type(other) is type(self) is Driven and all(
             is_same(getattr(self, name), getattr(other, name)) for name in fields

@@ -31,7 +31,7 @@ class Contact(Part):
         Ends; b defaults to GROUND.
     law : FrictionLaw
     normal_force : float, SymPy expression or law of ``fm.normal``
-        A number or an expression (as in :class:`Force`; acts on nobody, below 0 counts as 0), or a law.
+        A number, an expression (as in :class:`Force`; only friction feels it, and below 0 it counts as 0), or a law.
     axes : str or sequence, optional
         Tangential directions: one or two letters or direction tuples, at right angles (a law of sliding and spinning
         takes three, the third the speed of the rim).  Default: the axes along which the ends move, less the axis of a

@@ -24,7 +24,7 @@ class DrivenAngle(Joint):
     angle : number or SymPy expression in ``fm.t``, optional
         The relative angle itself.
     speed : number or SymPy expression in ``fm.t``, optional
-        Instead: its rate, from the declared relative angle on.
+        Its rate instead; the angle starts as declared.
     """
 
     only_relative: ClassVar[bool] = True
@@ -51,7 +51,7 @@ class DrivenAngle(Joint):
         return (("rate", self.speed, start_angle(self.a) - start_angle(self.b)),)
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """As prescribed."""
+        """Coordinate less its prescribed value, kept 0."""
         return (x[0] - x[1],)
 
 
@@ -68,7 +68,7 @@ class DrivenSlide(PlaneJoint):
     distance : number or SymPy expression in ``fm.t``, optional
         The distance itself.
     speed : number or SymPy expression in ``fm.t``, optional
-        Instead: its rate, from 0 on.
+        Its rate instead; the distance starts at 0.
     """
 
     only_relative: ClassVar[bool] = True
@@ -95,7 +95,7 @@ class DrivenSlide(PlaneJoint):
         return (("value", self.distance, 0.0),) if self.distance is not None else (("rate", self.speed, 0.0),)
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """As prescribed."""
+        """Coordinate less its prescribed value, kept 0."""
         import sympy
 
         turn = x[2] + self.angle

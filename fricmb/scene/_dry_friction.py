@@ -38,11 +38,11 @@ def law_of_limits(part: Part, static: Any, kinetic: Any, law: FrictionLaw | None
 
 @dataclass(frozen=True, eq=False, init=False)
 class DryFriction(Contact):
-    """Friction whose limit no load sets: a torque (or force) of at most ``static`` holds, ``kinetic`` opposes slip.
+    """Dry friction independent of any load: up to ``static`` it holds, in slip ``kinetic`` opposes the motion.
 
-    What data sheets and robot descriptions give as the friction of a joint: seals, preloaded bearings, drives.  It is a
-    contact along one coordinate under the normal force 1, so that coefficients of its law are forces, about an angle
-    torques; sticking, break-away and reversals are located, ``sol.force(name)`` and ``sol.mode(name)`` tell of them.
+    Data sheets and robot descriptions give the friction of seals, preloaded bearings and drives in this form.  The part
+    is a contact along one coordinate under the normal force 1, so that the coefficients of its law are forces (about an
+    angle, torques).  Sticking, break-away and reversals are located; see ``sol.force(name)`` and ``sol.mode(name)``.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class DryFriction(Contact):
         Ends; b defaults to GROUND, beside a joint to its other end.
     axis : "x", "y", "z", "angle", tuple of float, Revolute or Prismatic
         Coordinate of a less that of b: along a letter or a direction tuple; "angle" of bodies that turn in the plane.
-        A pin stands for the angle of its bodies, a guide for the way along its line, which may turn: the part is a
+        A pin stands for the angle of its bodies, a guide for the distance along its line, which may turn: the part is a
         :class:`GuideFriction` then, whose law is ``"dry.friction.mu_s"`` among the parameters.
     static : float, Parameter or expression of parameters
         Force (torque) that breaks away, >= 0.
@@ -62,7 +62,7 @@ class DryFriction(Contact):
         In place of both, any law of one direction: its coefficients are forces (torques), ``r`` is the relative speed.
         ``static`` and ``kinetic`` are short for ``law=Coulomb(mu_s=static, mu_k=kinetic)``.
     normal_force : float or SymPy expression, optional
-        What the limits are multiplied by, 1 by default: friction per unit of a load, as in :class:`Contact`.
+        Factor of the limits, 1 by default: for friction per unit of a load, as in :class:`Contact`.
     slide : float or expression in ``fm.t``, optional
         Added to a's velocity relative to b.
 
@@ -85,7 +85,7 @@ class DryFriction(Contact):
 
     Examples
     --------
-    An arm of 2 kg is let go at 80 degrees; its joint holds it where the weight asks for at most 3 N m.
+    An arm of 2 kg is let go at 80 degrees; its joint holds it where the moment of its weight is at most 3 N m.
 
     >>> import math
     >>> import fricmb as fm

@@ -28,20 +28,20 @@ class Gear(Joint):
         Radius of b over that of a, not 0; < 0 for an internal gear or a belt.
     pressure_angle : float, optional
         Of the teeth, in radians, between -pi/2 and pi/2 (20 degrees are 0.349): the force between them acts on both
-        wheels at the pitch point between their centres, on lines that lean by this angle.  Teeth push the wheels
-        apart on the flank that carries while the torque on a is counter-clockwise if the angle is > 0, clockwise if it
-        is < 0; under a torque the other way the part across would have the wrong sign.  Centres have to stay in place,
-        one beside the other: ``sol.stats.notes`` says by how much they moved.
+        wheels at the pitch point between their centres, on lines that lean by this angle.  Its sign names the flank
+        that carries: > 0 while the torque on a is counter-clockwise, < 0 while it is clockwise (under a torque the
+        other way the force that parts the wheels would have the wrong sign).  The distance of the centres must not
+        change; ``sol.stats.notes`` says by how much it did.
     centres : (float, float, float, float), optional
         X and y of the centre of a, then of b, for the pressure angle; default: as the ends are declared.
     efficiency : float, optional
-        Share of the power taken from a that b gets, where a drives, > 0 and < 1; None: no losses.
+        Power that b gets over power taken from a, where a drives; > 0 and < 1.  None: no losses.
     efficiency_back : float, optional
         The same where b drives, < 1; None: ``2 - 1/efficiency``, that of a worm.  At 0 and below, which for a worm is
         an efficiency up to a half, the gear locks itself: b cannot drive a, whatever its torque.
     friction : FrictionLaw, optional
-        Beside an efficiency, of one direction: its coefficient, over the speed of a, multiplies the loss, which for
-        more break-away is ``Coulomb(mu_s=1.2, mu_k=1.0)``; default 1.
+        With an efficiency: a law of one direction whose coefficient, a function of the speed of a, multiplies the loss.
+        Default 1; under ``Coulomb(mu_s=1.2, mu_k=1.0)`` the gear breaks away at 1.2 times the loss in motion.
 
     Raises
     ------
@@ -61,11 +61,11 @@ class Gear(Joint):
 
         mu = 2 (1 - e)(1 - e_b)/(1 - e e_b),    c mu = (1 - 2 e_b + e e_b)/(1 - e e_b).
 
-    At rest F is what holds, within ``mu |lam|``: a gear stays stuck in a range of torques on both sides, and that it
-    sticks and lets go is located (``sol.events``, ``sol.mode(name)``); ``sol.force(name)`` is F, ``sol.normal_force``
-    is ``mu |lam|``.  G. Pelchen, C. Schweiger, M. Otter, Modeling and simulating the efficiency of gearboxes and of
-    planetary gearboxes, 2nd Int. Modelica Conference (2002) 257-266; ``2 - 1/efficiency``: all friction on the side of
-    a (G. Niemann, H. Winter, Maschinenelemente 3, Springer 1986).
+    At rest F takes the value that holds, within ``mu |lam|``: a gear stays stuck in a range of torques on both sides,
+    and both transitions are located (``sol.events``, ``sol.mode(name)``); ``sol.force(name)`` is F,
+    ``sol.normal_force`` is ``mu |lam|``.  G. Pelchen, C. Schweiger, M. Otter, Modeling and simulating the efficiency of
+    gearboxes and of planetary gearboxes, 2nd Int. Modelica Conference (2002) 257-266; ``2 - 1/efficiency``: all
+    friction on the side of a (G. Niemann, H. Winter, Maschinenelemente 3, Springer 1986).
 
     Examples
     --------

@@ -28,7 +28,7 @@ class GuideFriction(PlaneJoint):
     angle : float
         Direction of the line in the axes of b.
     load : float
-        What the limits are multiplied by.
+        Factor of the limits.
     friction : FrictionLaw
         Of one direction; its coefficients are forces.
     """
@@ -60,7 +60,7 @@ class GuideFriction(PlaneJoint):
         return sympy.cos(turn), sympy.sin(turn), x[1] * sympy.cos(turn) - x[0] * sympy.sin(turn)
 
     def define_load(self, x: tuple[Any, ...], lam: tuple[Any, ...]) -> Any:
-        """What the limits are multiplied by."""
+        """Factor of the limits."""
         return self.load
 
 

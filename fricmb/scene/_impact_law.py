@@ -17,19 +17,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class ImpactLaw(Part):
-    """What the coefficients of restitution of a scene mean.  Without one it is Newton's law.
+    """Law of impact of a scene: the meaning of its coefficients of restitution.  Newton's law by default.
 
     Parameters
     ----------
     name : str
         Unique in a scene, without dots.
     law : str
-        "newton": of velocities.  What is hit leaves with ``e`` times the speed of its approach.  "poisson": of
-        impulses.  In a first phase what is hit is brought to rest; in a second one each contact gives back ``e`` times
-        the normal impulse that it took in the first.
+        "newton": a law of velocities.  Each contact parts at ``e`` times its speed of approach.  "poisson": a law of
+        impulses.  In a first phase contacts are compressed until none approaches; in a second one each gives back ``e``
+        times its normal impulse of the first.
     several : str
-        What is hit or held at one instant: "together", in one problem with a law for each contact; or "in_turn": each
-        contact that approaches has an impact of its own, the fastest first, until none approaches any more.
+        How contacts hit or held at one instant are solved: "together", in one problem with a law for each contact; or
+        "in_turn": each contact that approaches has an impact of its own, the fastest first, until none approaches any
+        more.
 
     Raises
     ------
@@ -40,13 +41,13 @@ class ImpactLaw(Part):
     -----
     A single contact without friction has the same impacts by both.  With friction that changes the direction of slip
     within an impact, Newton's law may gain energy, at which a run ends with an error; Poisson's does not.  Where
-    several contacts are hit or held together they differ: by Newton's law what is held stays so unless it is thrown
-    up, by Poisson's it gives back a part of its impulse as well.
+    several contacts are hit or held together they differ: by Newton's law a contact that holds stays closed unless it
+    is thrown open, by Poisson's it gives back a part of its impulse as well.
 
-    Impacts in turn are those of bodies with a little air between them: in a row of equal elastic balls that touch the
-    last one leaves with the whole speed of the first, where together all of them move.  Which of two comes first is
-    then a matter of their speeds, of two alike of the order of the parts.  What comes to rest by bounces, and what
-    still approaches after 400 impacts, is brought to rest together.
+    Impacts in turn describe bodies with a little air between them: in a row of equal elastic balls the last one leaves
+    with the whole speed of the first, whereas solved together all of them move.  The fastest approach comes first; of
+    two alike, the first in the order of the parts.  Contacts whose bounces come to rest, and contacts that still
+    approach after 400 impacts, are brought to rest together.
 
     Each phase obeys Coulomb's law by the slip at its end, ``-Lambda_T in mu Lambda_N Sgn(gamma_T)`` (F. Pfeiffer and
     C. Glocker, Multibody Dynamics with Unilateral Contacts, Wiley 1996, chapter 8, without restitution along the slip):
@@ -56,8 +57,8 @@ class ImpactLaw(Part):
 
     Examples
     --------
-    A ball of twice the mass of the one that it rests on hits with it a floor: by Newton's law both stay in touch, by
-    Poisson's the upper one leaves with the speed of the approach.
+    Two balls in touch fall on a floor, the upper one twice as heavy: by Newton's law both stay in touch, by Poisson's
+    the upper one leaves with the speed of the approach.
 
     >>> import fricmb as fm
     >>> a = fm.Body("a", mass=1.0, position={"y": 1.0}, velocity={"y": -1.0}, axes="y")

@@ -29,7 +29,7 @@ class Joint(Part):
     - :meth:`define_slip`: factors s(x) of the slip velocity ``s . x'``; with :attr:`slip_rows` > 1 a tuple of such;
     - :meth:`define_load`: the normal force N(x, lam) >= 0.
 
-    One that holds nothing (:attr:`constrains` is False: it presses and rubs) states these two alone, and
+    A joint that constrains nothing (:attr:`constrains` is False: it presses and rubs) states these two alone, and in
     :meth:`parts_within` the element that presses; it is open where N < 0.
 
     Parameters

@@ -42,7 +42,7 @@ class Revolute(PlaneJoint):
         return self.apart() + (self.angles() if self.friction is not None else ())
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """No distance."""
+        """Distance between the points, kept 0."""
         return x[0], x[1]
 
     def define_slip(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -79,7 +79,7 @@ class Fixed(PlaneJoint):
         return (*self.apart(), self.kept_angle())
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """All 0."""
+        """Distance and relative angle, kept 0."""
         return x
 
 
@@ -118,7 +118,7 @@ class Prismatic(PlaneJoint):
         return (*self.apart(), self.kept_angle(), self.angles()[1])
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """No distance across the line."""
+        """Distance across the line, kept 0."""
         import sympy
 
         turn = x[3] + self.angle
@@ -159,5 +159,5 @@ class Rod(BetweenPoints):
     length: Any
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Of unit slope along the rod."""
+        """Distance less its kept value, scaled to unit slope along the rod; kept 0."""
         return kept_distance(x, self.length)

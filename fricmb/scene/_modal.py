@@ -43,19 +43,20 @@ class ModalBody(Part):
         Modal damping matrix, where damping couples modes (as a C that is not proportional does): the force
         ``-damping eta'``; then ``damping_ratios`` must be 0.
     truncation : float, optional
-        Share of the elastic displacement at contacts and loads that may be wrong: higher modes are replaced by a few
-        residual ones that keep the static flexibility; the plan prints how many, and the estimate.
+        Largest error accepted in the elastic displacement at contacts and loads, as a share of it: higher modes are
+        replaced by a few residual ones that keep the static flexibility; the plan prints how many, and the estimate.
     residual : int
-        How many of the last modes are such residual ones already.
+        Number of the last modes that are such residual ones already.
     neglected : float
-        Share of the static flexibility that those carry: from :meth:`from_matrices` and :meth:`from_mesh`.
+        Share of the static flexibility that the residual modes carry: set by :meth:`from_matrices` and
+        :meth:`from_mesh`.
     parts : dict of str to (n, n)
         Matrices in the coordinates of the body, such as friction and gyroscopic terms, which :meth:`matrix` puts into a
         scene: from :meth:`from_fe`.
     scales : dict of str to number, parameter or expression
-        What multiplies each of these parts, where :meth:`matrix` gives no other: from :meth:`from_fe`.
+        Factor of each of these parts, unless :meth:`matrix` is given another: set by :meth:`from_fe`.
     errors : sequence of float
-        Relative error of eigenvalues, estimated, at the samples of :meth:`from_fe`.
+        Estimated relative errors of the eigenvalues at the samples of :meth:`from_fe`.
 
     Raises
     ------
@@ -298,8 +299,8 @@ class ModalBody(Part):
             Whether residual vectors keep the static flexibility at the points.
         enrich : sequence of dict of str to float
             Samples of parameters, or of factors of the model's parts, at which complex modes are added to the basis:
-            growth rates need them.  Eigenvalues up to ``up_to`` are right to some ``tolerance`` there; ``errors`` says
-            how far.
+            growth rates need them.  Eigenvalues up to ``up_to`` are accurate to about ``tolerance`` there; ``errors``
+            holds the estimates.
         scales : dict of str to expression, optional
             Of parts: the number in front as an expression of the parameters in ``enrich``; default: those of the model.
             Names of parts begin with K (stiffness), C, D or G (damping), or M.
@@ -353,8 +354,8 @@ class ModalBody(Part):
         Raises
         ------
         SceneError
-            If modal masses are missing, a shape is complex, or ``scale`` is no driving point: its residues are above 0
-            for every mode.
+            If modal masses are missing, a shape is complex, or ``scale`` is not of a driving point (whose residues are
+            > 0 for every mode).
         """
         from fricmb.scene._modal_test import from_test
 

@@ -184,11 +184,11 @@ class PartEnd(Part, End):
 
     @property
     def owner(self) -> Part:
-        """Itself."""
+        """The part itself."""
         return self
 
     def moved_to(self, part: Part) -> End:
-        """The other version."""
+        """The other version of the part."""
         return part if isinstance(part, End) else self
 
 
@@ -210,7 +210,7 @@ class PointEnd(End):
 
     @property
     def movable(self) -> bool:
-        """Always."""
+        """True: forces move it."""
         return True
 
     def motion(self, letter: str) -> LinearForm:
@@ -234,7 +234,7 @@ class Ground(PartEnd):
 
     @property
     def movable(self) -> bool:
-        """Never."""
+        """False: the ground rests."""
         return False
 
     def motion(self, letter: str) -> LinearForm:

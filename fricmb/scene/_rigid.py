@@ -42,7 +42,8 @@ class RigidBody(PartEnd):
     mass, inertia : float
         > 0; the inertia about the centre of mass.
     position : (float, float)
-        Centre of mass at the start; default (0, 0).  Joints that it does not satisfy move it: see ``sol.stats.notes``.
+        Centre of mass at the start; default (0, 0).  A body that does not fit its joints is moved onto them: see
+        ``sol.stats.notes``.
     angle, angular_velocity : float
         At the start.
     velocity : (float, float)
@@ -90,7 +91,7 @@ class RigidBody(PartEnd):
         return tuple(f"{self.name}.{c}" for c in (*PLANE, "angle"))
 
     def masses(self) -> tuple[float, float, float]:
-        """What counts for x, y and angle."""
+        """Mass, mass and inertia: the diagonal of the mass matrix."""
         mass = float(value_of(self.mass))
         return mass, mass, float(value_of(self.inertia))
 
@@ -101,12 +102,12 @@ class RigidBody(PartEnd):
 
     @property
     def letters(self) -> tuple[str, ...]:
-        """The plane."""
+        """Letters of the plane."""
         return PLANE
 
     @property
     def movable(self) -> bool:
-        """Always."""
+        """True: forces move it."""
         return True
 
     def moves_like(self, other: object) -> bool:
@@ -172,7 +173,7 @@ class RigidPoint(PointEnd):
 
     @property
     def letters(self) -> tuple[str, ...]:
-        """The plane."""
+        """Letters of the plane."""
         return PLANE
 
     def moves_like(self, other: object) -> bool:
@@ -208,12 +209,12 @@ class GroundPoint(End):
 
     @property
     def letters(self) -> tuple[str, ...]:
-        """The plane."""
+        """Letters of the plane."""
         return PLANE
 
     @property
     def movable(self) -> bool:
-        """Never."""
+        """False: the ground rests."""
         return False
 
     def motion(self, letter: str) -> LinearForm:

@@ -181,7 +181,7 @@ class RigidStop(_RigidLimits):
             self._refuse("upper", self.upper, f"above lower = {value_of(self.lower):g}")
 
     def limits(self) -> tuple[Any, Any]:
-        """As declared."""
+        """The limits as declared."""
         return self.lower, self.upper
 
 

@@ -40,15 +40,16 @@ class RollerOnLine(Surface):
         error where the point meets the line again (impacts are not computed without ``restitution``).  A scene that
         starts with the point away from the line, on the side of the normal, or leaving it, starts open.
     restitution : float, optional
-        With ``push_only``, from 0 to 1: a point that meets the line with speed v leaves it with ``restitution`` v, by
-        Newton's law of impact over all that is hit or held at the instant; ``when_lost`` is "open" then.
+        Coefficient of restitution, from 0 to 1, with ``push_only``: a point that meets the line at speed v leaves it at
+        ``restitution`` v.  All contacts hit or held at that instant are solved together (:class:`ImpactLaw`);
+        ``when_lost`` is then "open".
     tangential_restitution : float, optional
-        The same along the line, from -1 to 1 (default 0), where friction in the impact allows it.
+        Coefficient of restitution along the line, from -1 to 1 (default 0), as far as friction in the impact allows it.
     mu_impact : float, optional
         Coefficient of friction in impacts, >= 0; default: mu_k of a Coulomb law.  Other laws need it.
     slide : number or SymPy expression in ``fm.t``, or two of them
-        Velocity of the surface along the line; of two the second across the plane.  The point is guided there, and
-        slip across is part of the cone.
+        Velocity of the surface along the line; a second one is that across the plane, where the point is guided: slip
+        across is then part of the cone.
     friction : FrictionLaw, optional
         Normal force: magnitude of the reaction.
     """
@@ -96,7 +97,7 @@ class RollerOnLine(Surface):
         return True
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """No distance across the line."""
+        """Distance across the line, kept 0."""
         import sympy
 
         turn = x[2] + self.angle
@@ -135,7 +136,7 @@ class RollerOnCircle(BetweenPoints, Surface):
     radius: Any
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Of unit slope outward."""
+        """Distance less the radius, scaled to unit slope outward; kept 0."""
         return kept_distance(x, self.radius)
 
     def define_slip(self, x: tuple[Any, ...]) -> tuple[Any, ...]:

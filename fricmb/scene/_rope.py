@@ -19,7 +19,7 @@ from fricmb.values import is_list, is_one_of, value_of
 
 @dataclass(frozen=True, eq=False, init=False)
 class Rope(Joint):
-    """A rope (belt, band) without mass that does not stretch, over a drum on which it sticks or slips.
+    """A massless, inextensible rope (belt, band) over a drum on which it sticks or slips.
 
     Reaction: the mean of the tensions on both sides.  ``sol.force(name)`` is their difference, that at the first end
     less that at the second, so that the tensions are ``reaction + force/2`` and ``reaction - force/2``.
@@ -29,25 +29,25 @@ class Rope(Joint):
     name : str
         Unique in a scene, without dots.
     ends : (end, end)
-        What hangs on the rope: two of Body, RigidBody, a point of one, ``ground_point(x, y)`` or GROUND.
+        Ends of the rope: two of Body, RigidBody, a point of one, ``ground_point(x, y)`` or GROUND.
     axes : (axis, axis)
         For each end the direction in which the rope runs off the drum towards it, a letter or a direction tuple; the
-        rope pulls against it.  It is the same throughout: ends move along it.
+        rope pulls against it.  Directions stay as they are: the ends move along them.
     drum : RigidBody, one of its points, or GROUND
-        What it is wound on.
+        The drum that the rope is wound on.
     radius : float
-        Of a drum that turns: > 0 where turning counter-clockwise takes the rope from the first end to the second,
-        < 0 where from the second to the first.
+        Radius of a drum that turns: > 0 if its counter-clockwise rotation carries the rope from the first end to the
+        second, < 0 if from the second to the first.
     angle : float
-        By which the rope is wound around the drum, in radians, > 0.
+        Angle of wrap on the drum, in radians, > 0.
     friction : float or Coulomb
         Coefficient of friction mu of the rope on the drum; a law with mu_s > mu_k holds more before it slips.
     length : float, optional
         Sum of the distances of both ends from the drum along the directions; default: as the ends are declared here,
         also where a scene gives them other positions later.
     when_slack : "end" or "open"
-        What happens where a tension would have to be negative: the run ends there with an error that says so, or goes
-        on without the rope, and ends with an error where that is taut again.
+        Where a tension would have to be negative the run ends with an error that says so, or goes on without the rope
+        and ends with an error where that is taut again.
 
     Raises
     ------
@@ -67,7 +67,7 @@ class Rope(Joint):
 
     Examples
     --------
-    Half a turn on a fixed bollard holds e^(mu pi) times what is pulled with:
+    Half a turn on a fixed bollard holds e^(mu pi) times the pull:
 
     >>> import math
     >>> import fricmb as fm
@@ -192,7 +192,7 @@ class Rope(Joint):
     # -- what a joint states ------------------------------------------------------------------------------------
     @property
     def one_sided(self) -> bool:
-        """It pulls only."""
+        """True: a rope only pulls."""
         return True
 
     @property
@@ -201,7 +201,7 @@ class Rope(Joint):
         return self.when_slack == "open"
 
     def undefined(self, values: Mapping[str, float]) -> str:
-        """Never."""
+        """"": a rope has a meaning at all positions."""
         return ""
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:

@@ -53,7 +53,7 @@ class Scene:
     parts : iterable of parts
         In the order of the degrees of freedom; every body that a part refers to must be among them.
     units : Units, optional
-        What the numbers are in, for labels: ``units=fm.Units("s", "m", "N")``; default: the names of the dimensions.
+        Units of the numbers, for labels: ``units=fm.Units("s", "m", "N")``; default: the names of the dimensions.
 
     Raises
     ------
@@ -421,16 +421,17 @@ class Scene:
     def draw(self, *, ax: Axes | None = None) -> Figure:
         """The scene as a matplotlib figure: bodies, springs and dampers along their directions, joints, contacts.
 
-        Rigid bodies stand as they do at the start, to scale; of other scenes the drawing shows what hangs on what, from
-        above where a contact has two tangential directions.  ``ax``: axes to draw into.
+        Rigid bodies are drawn to scale, as they stand at the start; other scenes as a diagram of what is tied to what,
+        seen from above where a contact has two tangential directions.  ``ax``: axes to draw into.
         """
     def graph(self) -> networkx.MultiGraph:
         """The scene as a graph of networkx: bodies and the ground are nodes, what acts between them edges.
 
         Nodes are named by their bodies, the ground is "ground"; ``kind`` is "body", "driven" or "ground".  Edges have
         the name of their part as key; ``kind`` is "element", "contact" or "joint".  ``part`` is the declaration of
-        each.  What acts on one body alone (a force) is tied to the ground; what acts on several (a matrix), and to
-        those whose motion its expressions read (``reads`` is True there), from the first to each of the others.
+        each.  A part that acts on one body alone (a force) is an edge to the ground.  A part that acts on several
+        bodies (a matrix), or whose expressions read the motion of others (``reads`` is True there), has an edge from
+        the first to each of the others.
 
         Returns
         -------

@@ -103,12 +103,12 @@ class SpaceBody(PartEnd):
 
     @property
     def letters(self) -> tuple[str, ...]:
-        """Space."""
+        """Letters of space."""
         return LETTERS
 
     @property
     def movable(self) -> bool:
-        """Always."""
+        """True: forces move it."""
         return True
 
     def motion(self, letter: str) -> LinearForm:
@@ -189,7 +189,7 @@ class SpacePoint(PointEnd):
 
     @property
     def letters(self) -> tuple[str, ...]:
-        """Space."""
+        """Letters of space."""
         return LETTERS
 
     def motion(self, letter: str) -> LinearForm:

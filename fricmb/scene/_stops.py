@@ -137,10 +137,10 @@ class _Touching(Element):
 
 @dataclass(frozen=True, eq=False)
 class Stop(_Touching):
-    """Ends of a way: a spring and a damper that cannot pull, where a coordinate goes beyond its limits; or rigid ends.
+    """Limits of a coordinate: beyond them a spring and a damper push back and never pull, or the ends are rigid.
 
-    Force on a, of the depth ``d = x - upper`` (``d = lower - x`` at the other end) and its rate d':
-    ``max(0, stiffness d (1 + hunt_crossley d') + damping s(d) d')`` back into the way where ``d > 0``, else 0.
+    With the depth ``d = x - upper`` (``d = lower - x`` at the other end) and its rate d' the force on a is ``max(0,
+    stiffness d (1 + hunt_crossley d') + damping s(d) d')``, back between the limits, where ``d > 0``, else 0.
 
     Parameters
     ----------
@@ -149,23 +149,23 @@ class Stop(_Touching):
     a, b : Body, RigidBody, Driven, a point or GROUND
         Ends; b defaults to GROUND, beside a joint to its other end.
     axis : "x", "y", "z", "angle", tuple of float, Revolute or Prismatic
-        The coordinate x, of a less that of b, as in :class:`DryFriction`; along a guide that of its line, which may
-        turn (``guide`` and ``angle`` keep its name and direction; not beside restitution).
+        The coordinate x: that of a less that of b, as in :class:`DryFriction`; along a guide, that of its line, which
+        may turn (``guide`` and ``angle`` keep its name and direction; not with restitution).
     lower, upper : float, optional
-        Its limits, one of them or both, lower < upper.
+        Limits of x, one of them or both, lower < upper.
     stiffness : float
-        Of both ends, force per length (torque per radian), > 0.
+        Stiffness of both ends, force per length (torque per radian), > 0.
     hunt_crossley : float
         Loss that grows with the force of the spring, 1/speed, >= 0.
     damping : float
         Force per speed, >= 0, at a depth of ``damping_depth`` and beyond.
     damping_depth : float
-        Over which ``damping`` comes in, > 0: ``s(d) = u^2 (3 - 2 u)``, ``u = min(1, d/damping_depth)``; to be given
-        where there is damping.  Without it the force would jump where it touches.
+        Depth over which ``damping`` comes in, > 0: ``s(d) = u^2 (3 - 2 u)``, ``u = min(1, d/damping_depth)``.  Required
+        with damping, whose force would otherwise jump at the first touch.
     restitution : float
-        In place of all these: the ends do not give, and what meets one with speed v leaves it with ``restitution`` v,
-        from 0 to 1.  Impacts are events, ``sol.impulse(name)`` and ``sol.energy.impact_loss`` tell of them, and bounces
-        that come to rest are followed to their end; ``sol.reaction(name)`` is the force on a where it is held.
+        In place of all these: coefficient of restitution of rigid ends, from 0 to 1.  A body that meets one at speed v
+        leaves it at ``restitution`` v.  Impacts are events (see ``sol.impulse(name)`` and ``sol.energy.impact_loss``),
+        bounces are followed until they come to rest, and ``sol.reaction(name)`` is the force on a while it is held.
 
     Raises
     ------
@@ -174,10 +174,10 @@ class Stop(_Touching):
 
     Notes
     -----
-    It touches at ``d = 0`` and lets go where the force is 0, which where it parts fast is before the spring is free: it
-    never pulls.  Steps end at both instants; :meth:`Solution.touches` tells them.  K. H. Hunt, F. R. E. Crossley,
-    Coefficient of restitution interpreted as damping in vibroimpact, J. Appl. Mech. 42 (1975) 440-445; ``damping`` as
-    of the function IMPACT of MSC Adams.
+    Contact begins at ``d = 0`` and ends where the force falls to 0: in a fast separation before the spring is free, so
+    that the stop never pulls.  Steps end at both instants; :meth:`Solution.touches` lists them.  K. H. Hunt, F. R. E.
+    Crossley, Coefficient of restitution interpreted as damping in vibroimpact, J. Appl. Mech. 42 (1975) 440-445;
+    ``damping`` as of the function IMPACT of MSC Adams.
 
     Examples
     --------
@@ -191,7 +191,7 @@ class Stop(_Touching):
     >>> [float(t.round(6)) for t in touches.begin], touches.side
     ([0.5, 1.814159], ['upper', 'lower'])
 
-    Between rigid ones it loses a part of its speed at each:
+    Between rigid stops it loses half its speed at each:
 
     >>> rigid = fm.Stop("ends", block, axis="x", lower=-1.0, upper=1.0, restitution=0.5)
     >>> sol = fm.simulate(fm.Scene("block", [block, rigid]), t_end=3.0, rtol=1e-8)
@@ -223,7 +223,7 @@ class Stop(_Touching):
             self._refuse("upper", self.upper, f"above lower = {value_of(self.lower):g}")
 
     def limits(self) -> tuple[Any, Any]:
-        """As declared."""
+        """The limits as declared."""
         return self.lower, self.upper
 
 
@@ -231,7 +231,7 @@ class Stop(_Touching):
 class Backlash(_Touching):
     """Play: two bodies are free within a gap, and held by a spring and a damper that cannot pull at both ends of it.
 
-    Force on a as of a :class:`Stop` with the limits ``-gap/2`` and ``gap/2``.
+    The force on a is that of a :class:`Stop` with the limits ``-gap/2`` and ``gap/2``.
 
     Parameters
     ----------
@@ -240,20 +240,20 @@ class Backlash(_Touching):
     a, b : Body, RigidBody, Driven, a point or GROUND
         Ends; b defaults to GROUND, beside a joint to its other end.
     axis : "x", "y", "z", "angle", tuple of float, Revolute or Prismatic
-        The coordinate, of a less that of b, as in :class:`Stop`.
+        The coordinate: that of a less that of b, as in :class:`Stop`.
     ratio : float, optional
-        In place of ``axis``, of two wheels in mesh: the coordinate is ``angle of a + ratio (angle of b)``, as of a
-        :class:`Gear` (radius of b over that of a, not 0; < 0 for an internal gear or a shaft).
+        In place of ``axis``, for two wheels in mesh: radius of b over that of a, not 0 (< 0 for an internal gear or a
+        shaft).  The coordinate is then ``angle of a + ratio (angle of b)``, as for a :class:`Gear`.
     gap : float
         The whole play, >= 0: from one flank to the other.
     stiffness : float
-        Of each flank, force per length (torque on a per radian of a), > 0.
+        Stiffness of each flank, force per length (torque on a per radian of a), > 0.
     hunt_crossley : float
         Loss that grows with the force of the spring, 1/speed, >= 0.
     damping, damping_depth : float
         Force per speed, >= 0, and the depth over which it comes in, > 0.
     restitution : float
-        In place of all these, rigid flanks, as of a :class:`Stop`; then gap > 0.
+        In place of all these: coefficient of restitution of rigid flanks, as for a :class:`Stop`; then gap > 0.
 
     Raises
     ------
@@ -315,7 +315,7 @@ class Backlash(_Touching):
         return angle_of(self, "a", self.a), angle_of(self, "b", self.b)
 
     def coordinate(self, x: Any, rates: Any, functions: Any) -> tuple[Any, Any]:
-        """The play, of wheels in mesh from both angles."""
+        """The play and its rate; for wheels in mesh, from both angles."""
         if self.ratio is None:
             return super().coordinate(x, rates, functions)
         return x[0] + self.ratio * x[1], rates[0] + self.ratio * rates[1]

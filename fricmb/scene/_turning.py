@@ -37,7 +37,7 @@ class TorsionSpring(Element):
     stiffness : float
         Torque per radian.
     angle : float
-        Relative angle without torque.
+        Relative angle at which the torque is 0.
     """
 
     a: End
@@ -101,7 +101,7 @@ class Torque(Force):
     name : str
     body : RigidBody or one of its points
     b : RigidBody, one of its points, or GROUND
-        What the torque reacts on; default GROUND.
+        The body that takes the opposite torque; default GROUND.
     value : float or SymPy expression
         In ``fm.t``, ``fm.coordinate("arm.angle")``, ``fm.speed("arm.angle")`` and parameters.
     """

@@ -13,7 +13,7 @@ from fricmb.scene._rollers import RollerOnLine
 
 @dataclass(frozen=True, eq=False)
 class Wheel(RollerOnLine):
-    """A disc about a point of a stands on a line through b, fixed in b.  Reaction: force on a along the line's normal.
+    """A disc centred at a point of a stands on a line fixed in b.  Reaction: force on a along the line's normal.
 
     With friction it slips where rim and line have different velocities, and rolls where they stick: ``sol.mode(name)``
     is 0 while it rolls, and both changes are located.
@@ -32,19 +32,19 @@ class Wheel(RollerOnLine):
     push_only, when_lost : bool, str
         As of :class:`RollerOnLine`: whether it may lift off, and what happens then.
     restitution, tangential_restitution, mu_impact : float, optional
-        As of :class:`RollerOnLine`: what impacts are like.
+        Impacts, as for :class:`RollerOnLine`.
     slide : number or SymPy expression in ``fm.t``
         Velocity of the surface along the line (a belt, a roller table).
     friction : FrictionLaw, optional
         Normal force: magnitude of the reaction.
     rolling_resistance : float or FrictionLaw, optional
-        Arm of the torque against rolling, a length: it is the arm times the load, and at rest up to that.  A law of
-        one direction has arms for coefficients, over the rate of the angle.
+        Arm of the torque against rolling, a length: the torque is the arm times the load, at rest at most that.  The
+        coefficients of a law (one direction, over the rate of the angle) are arms.
 
     Raises
     ------
     SceneError
-        If ends or values cannot be.
+        If ends or values are not accepted.
 
     Notes
     -----
@@ -59,7 +59,7 @@ class Wheel(RollerOnLine):
 
     Examples
     --------
-    A bowl that slides until it rolls, at 2/3 of its speed for a disc:
+    A disc slides until it rolls, at 2/3 of its first speed:
 
     >>> import fricmb as fm
     >>> disc = fm.RigidBody("disc", mass=2.0, inertia=0.01, position=(0.0, 0.1), velocity=(3.0, 0.0))
@@ -78,7 +78,7 @@ class Wheel(RollerOnLine):
 
     @property
     def slip_rows(self) -> int:  # type: ignore[override]
-        """Along the line."""
+        """1: slip along the line."""
         return 1
 
     def __post_init__(self) -> None:

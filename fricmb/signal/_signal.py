@@ -42,17 +42,17 @@ class Signal(Arithmetic):
     y : (n,) array
         Values, finite.
     kind : {"linear", "hold", "cubic"}
-        What is between two values: the line through both, the first of them, or the cubic spline through all
+        Interpolation between two values: the line through both, the first of them, or the cubic spline through all
         (not-a-knot), whose second derivative is continuous.
     outside : {"refuse", "hold", "zero"}
-        What is before the first and behind the last: nothing, a run that goes there is refused; the end's value; 0.
+        Values before the first and after the last: none (a run that goes there is refused); that of the end; 0.
     name : str
-        How expressions are printed, "signal" by default.
+        Name in printed expressions, "signal" by default.
 
     Raises
     ------
     SceneError
-        Names the place of a value that is not finite, of a time that stands twice or falls.
+        For a value that is not finite, or a time that repeats or falls; names its place.
 
     Examples
     --------
@@ -109,7 +109,7 @@ class Signal(Arithmetic):
             CSV (also with ``;``, tabs, decimal commas, several lines of names, a byte order mark), npz, WAV, MAT, HDF5
             (extra ``hdf5``), UFF (extra ``uff``), TDMS (extra ``tdms``).
         time, value : str, optional
-            Names of the columns; by default of the times what is called t or time, and the only other one.
+            Names of the columns; by default the one called t or time, and the only other one.
         units : float or (float, float)
             Factor of values, or of times and of values: ``(1e-3, 9.81)`` for milliseconds and multiples of g.
         kind, outside
@@ -182,7 +182,7 @@ class Signal(Arithmetic):
 
     @property
     def noise(self) -> float:
-        """Standard deviation of what changes from value to value without any order, by third differences."""
+        """Standard deviation of the noise of single values, estimated from third differences."""
         if self.y.size < 8:
             return 0.0
         third = np.diff(self.y, 3)
@@ -190,7 +190,7 @@ class Signal(Arithmetic):
 
     @property
     def slope_noise(self) -> float:
-        """Standard deviation that :attr:`noise` gives the slope."""
+        """Standard deviation of the slope that follows from :attr:`noise`."""
         spacing = np.diff(self.t)
         return float(self.noise * _SLOPES[self.kind] / np.median(spacing)) if spacing.size else 0.0
 
@@ -211,12 +211,12 @@ class Signal(Arithmetic):
     # -- other series -------------------------------------------------------------------------------------------
     @answers
     def lowpass(self, frequency: float, *, order: int = 4) -> Signal:
-        """Without what swings faster, and without delay: Butterworth's filter, forth and back.
+        """A copy without faster swings, and without delay: Butterworth's filter, run forward and back.
 
         Parameters
         ----------
         frequency : float
-            At which half of the power of each pass is left; 1 over the unit of time.
+            Cut-off frequency, at which half of the power of each pass is left; cycles per unit of time.
         order : int
             Of each pass.
 
@@ -231,14 +231,14 @@ class Signal(Arithmetic):
 
     @answers
     def highpass(self, frequency: float, *, order: int = 4) -> Signal:
-        """Without what swings slower, as the drift of an accelerometer: see :meth:`lowpass`."""
+        """A copy without slower swings, such as the drift of an accelerometer; see :meth:`lowpass`."""
         from fricmb.signal._filters import filtered
 
         return replace(self, y=filtered(self, "highpass", frequency, order))
 
     @answers
     def detrended(self) -> Signal:
-        """Without its mean and its trend, by least squares."""
+        """A copy without its mean and its linear trend (by least squares)."""
         from scipy.signal import detrend
 
         if np.ptp(np.diff(self.t)) > 1e-6 * np.median(np.diff(self.t)):
@@ -256,14 +256,14 @@ class Signal(Arithmetic):
 
     @answers
     def shifted(self, by: float) -> Signal:
-        """Later by a time."""
+        """A copy shifted to later times."""
         if not _is_number(by):
             raise SceneError(f"Signal {self.name!r}: by must be a finite number, got {shown(by)}")
         return replace(self, t=self.t + float(by))
 
     @answers
     def aligned(self, other: Signal, *, within: float | None = None) -> Signal:
-        """Shifted in time so that it fits another series best: the largest correlation.
+        """A copy shifted in time to fit another series best, by the largest correlation.
 
         Parameters
         ----------

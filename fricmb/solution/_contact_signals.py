@@ -73,7 +73,7 @@ class ContactSignals(Ledger):
     def rest_spans(self, contact: str) -> Floats:
         """Stretches (n, 2) in which a contact is at rest without sticking, from the accepted steps.
 
-        That is so of joints of a mechanism which others hold: what sticks there is enough to stop them all.
+        Joints of a mechanism that others hold are at rest in this way: those that stick are enough to stop them all.
         """
         t, rests = self._resting
         mine = rests[self.names.contact(contact)]

@@ -64,7 +64,7 @@ class Differentiated(Recorded):
         Raises
         ------
         SceneError
-            Where the run was made without; UnknownNameError lists names near.
+            If the run was made without sensitivities; UnknownNameError lists the names near.
         """
         return self.derivatives.signal(self.names, signal, name, self.record.samples)
 
@@ -80,8 +80,8 @@ class Differentiated(Recorded):
     def unsafe_events(self) -> tuple[Event, ...]:
         """Transitions after which derivatives are not sound; ``sol.stats.notes`` says why.
 
-        Those that only touch their condition, releases that stuck contacts leave open, and several that change at one
-        time each on its own.  Needs ``simulate(sensitivities=...)``.
+        They are transitions that only touch their condition, releases that stuck contacts leave undetermined, and
+        several independent changes at one time.  Needs ``simulate(sensitivities=...)``.
         """
         return tuple(self.events[i] for i in self.derivatives.unsafe)
 

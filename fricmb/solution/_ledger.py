@@ -23,7 +23,7 @@ class Ledger(Differentiated):
         Raises
         ------
         IntegrationError
-            Where an energy is beyond what numbers hold.
+            If an energy is too large for a floating-point number.
         """
         energies = self.run.energies(self.record) if self._energies is None else self._energies
         found = self._ledger(energies, self.accounts, None if self.has_rows else self._reference)

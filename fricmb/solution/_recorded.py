@@ -49,7 +49,7 @@ class Recorded:
 
     @property
     def stats(self) -> Stats:
-        """How the run was made, and what it cost.  Reading its notes may integrate energies."""
+        """Method, counters, notes and cost of the run.  Reading the notes may integrate energies."""
         return self._stats if self._find_notes is None else self._stats.until_read(self._notes)
 
     @stats.setter

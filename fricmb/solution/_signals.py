@@ -84,7 +84,7 @@ class Signals(ContactSignals, Differentiated):
         return found
 
     def components(self, name: str) -> tuple[str, ...]:
-        """What the components of a signal of a contact or an element are called: ("x", "y")."""
+        """Names of the components of a signal of a contact or an element: ("x", "y")."""
         owner = owner_of(name) or name
         if owner in self.names.contact_index:
             return self.names.directions[self.names.contact(owner)]

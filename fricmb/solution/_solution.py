@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 class Solution(Signals):
-    """What a run found: motion, contacts, transitions, energies, and the cost of it.
+    """Result of a run: motion, contacts, transitions, energies, and what it cost.
 
     Made by :func:`fricmb.simulate`.  Time is the last axis of every array; units are those of the scene.
 
@@ -79,12 +79,12 @@ class Solution(Signals):
 
         What every part states in SymPy is evaluated by numpy at random times of the dense output: equations of motion
         and of law states in integrated form, laws and cones of friction, creep in stick, constraints, transitions,
-        energy.  Each residual is told in units of what the tolerance allows there.
+        energy.  Each residual is given in units of what the tolerance allows there.
 
         Parameters
         ----------
         rtol : float, optional
-            What residuals are measured by; default: the tolerance of the run, 1e-3 for fixed steps.
+            Tolerance that residuals are measured by; default: that of the run, 1e-3 for fixed steps.
         atol : float or (n_dof,) or (2 n_dof,), optional
             Errors that never matter; default: as in the run.
         seed : int
@@ -117,7 +117,7 @@ class Solution(Signals):
 
     @facade
     def touches(self, name: str) -> Touches:
-        """When a :class:`Stop` or the flanks of a :class:`Backlash` pushed.
+        """Times at which a :class:`Stop` or the flanks of a :class:`Backlash` pushed.
 
         Parameters
         ----------
@@ -131,7 +131,7 @@ class Solution(Signals):
         Raises
         ------
         SceneError
-            For the name of another part; for one with restitution, of which :meth:`impulse` tells.
+            For the name of another part, or of one with restitution (see :meth:`impulse`).
         """
 
     @answers
@@ -158,7 +158,7 @@ class Solution(Signals):
     def export(self, path: str | PathLike[str], names: Iterable[str] | None = None) -> Path:
         """Write signals for other programs: ".mat" (MATLAB), ".h5" or ".hdf5" (needs h5py), ".csv"; returns the path.
 
-        Transitions stand beside them, but in ".csv".  In MATLAB a name has underscores for its dots: ``pad_x``.
+        Files other than ".csv" hold the transitions as well.  In MATLAB a name has underscores for its dots: ``pad_x``.
 
         Parameters
         ----------
@@ -203,7 +203,7 @@ class Solution(Signals):
 
     @staticmethod
     def join(solutions: Iterable[Solution]) -> Solution:
-        """Runs that go on from each other as one; see :func:`fricmb.simulate`, ``initial=``."""
+        """Join runs that continue one another into one; see :func:`fricmb.simulate`, ``initial=``."""
         from fricmb.solution._join import join
 
         return join(solutions)

@@ -53,7 +53,7 @@ class LinearCreep(CreepLaw):
     """
 
     def define_force(self, v: tuple[Any, ...], N: Any, z: tuple[Any, ...]) -> Any:
-        """Proportional."""
+        """Force proportional to slip."""
         along, across = self.linear(v)
         return -along, -across
 
@@ -148,7 +148,7 @@ class Polach(CreepLaw):
     B: Any = 0.0
 
     def define_force(self, v: tuple[Any, ...], N: Any, z: tuple[Any, ...]) -> Any:
-        """Against slip."""
+        """Polach's force, against slip."""
         import sympy
 
         w = norm(v)

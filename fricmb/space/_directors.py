@@ -113,7 +113,7 @@ class RigidBody(SpaceBody):
 
     @property
     def offsets(self) -> Mapping[str, Any]:
-        """Points."""
+        """Points by name."""
         return self.points
 
     def point(self, name: str, offset: Any = None) -> SpacePoint:

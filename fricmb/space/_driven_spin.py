@@ -16,8 +16,8 @@ from fricmb.space._rotor import Rotor
 class DrivenSpin(SpaceJoint):
     """Prescribes the angular velocity of a rotor about its own axis.  Reaction: torque on it about that axis.
 
-    It follows the axis as that tilts, and does not hold it: the part of the angular velocity along the axis is what is
-    given, as by a drive through a joint that lets the axis go.
+    The drive follows the axis as it tilts and does not hold it: only the part of the angular velocity along the axis is
+    prescribed, as by a motor behind a flexible coupling.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class DrivenSpin(SpaceJoint):
         return (("rate", self.speed, 0.0),)
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """As prescribed."""
+        """Angle less its prescribed value, kept 0."""
         return (x[0] - x[1],)
 
 

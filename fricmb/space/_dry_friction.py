@@ -23,10 +23,10 @@ ANGLE, SLIDE = "angle", "slide"
 
 @dataclass(frozen=True, eq=False, init=False)
 class DryFriction(AxisJoint):
-    """Friction in space whose limit no load sets: a torque about an axis, or a force along it.
+    """Dry friction in space independent of any load: a torque about an axis, or a force along it.
 
-    It holds nothing but by its friction, and stands beside the joint that holds; see :class:`fricmb.DryFriction` for
-    coordinates in the plane and along letters (which serve bodies in space as well).
+    The part constrains nothing and stands beside the joint that does; see :class:`fricmb.DryFriction` for coordinates
+    in the plane and along letters (which serve bodies in space as well).
 
     Parameters
     ----------
@@ -37,14 +37,14 @@ class DryFriction(AxisJoint):
     axis : (float, float, float), Revolute, Prismatic or Cylindrical
         In space, as the bodies are declared; a joint stands for its own axis.
     along : "angle" or "slide", optional
-        What is rubbed: the angle about the axis, or the distance along it, which is fixed in b.  Default: what the
-        joint leaves free (of a Cylindrical it must be given); "angle" where no joint is given.
+        The coordinate that rubs: the angle about the axis, or the distance along it, which is fixed in b.  Default: the
+        one that the joint leaves free (of a Cylindrical it must be given); "angle" where no joint is given.
     static, kinetic : float, Parameter or expression of parameters
         Torque (force) that breaks away, and that of slip (None: follows ``static``).
     law : FrictionLaw, optional
         In place of both, any law of one direction: its coefficients are torques (forces).
     load : float, optional
-        What the limits are multiplied by, 1 by default.
+        Factor of the limits, 1 by default.
 
     Raises
     ------
@@ -145,5 +145,5 @@ class DryFriction(AxisJoint):
         return (*cross(u, w), *cross(w, apart), *cross(apart, u))
 
     def define_load(self, x: tuple[Any, ...], lam: tuple[Any, ...]) -> Any:
-        """What the limits are multiplied by."""
+        """Factor of the limits."""
         return self.load

@@ -32,12 +32,12 @@ class SpaceGroundPoint(End):
 
     @property
     def letters(self) -> tuple[str, ...]:
-        """Space."""
+        """Letters of space."""
         return LETTERS
 
     @property
     def movable(self) -> bool:
-        """Never."""
+        """False: the ground rests."""
         return False
 
     def motion(self, letter: str) -> LinearForm:

@@ -89,7 +89,7 @@ class Cylindrical(Guided):
         return (*super().local_coordinates(), *(self.turn()[:7] if self.friction is not None else ()))
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Of the axis."""
+        """Constraints of the axis, kept 0."""
         return super().define_constraint(x[0:12])
 
     def define_slip(self, x: tuple[Any, ...]) -> tuple[Any, ...]:

@@ -86,7 +86,7 @@ class InCylinder(OneSided, SpaceJoint):
             raise SceneError(f"{self._label()}: radius must be more than that of the ball, {value_of(self.a.radius):g}")
 
     def labels(self) -> tuple[str, ...]:
-        """As the cylinder has them."""
+        """Directions of slip: "around" and "along"."""
         return ("around", "along")
 
     def frame(self) -> Floats:
@@ -104,7 +104,7 @@ class InCylinder(OneSided, SpaceJoint):
         return (*self.seen(place), *self.seen(turned), free)
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Of unit slope inward."""
+        """Distance to the wall, scaled to unit slope inward; kept 0."""
         (outward,) = kept_distance(x[0:2], x[6])
         return (-outward,)
 

@@ -143,7 +143,7 @@ class OnPlane(OneSided, SpaceJoint):
         self.companions()
 
     def companions(self) -> tuple[TurningResistance, ...]:
-        """Resistances."""
+        """Resistances against rolling and spinning."""
         return tuple(
             TurningResistance(
                 f"{self.name}_{kind}", self.a, of=self.name, declared=(given, self.turning),

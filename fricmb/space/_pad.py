@@ -24,8 +24,8 @@ from fricmb.values import is_one_of, value_of
 class Pad(SpaceJoint):
     """A pad without mass, pressed by a spring and a damper on the flat face of a body, rubs on it in two directions.
 
-    It holds nothing: the normal force is that of the spring.  Where that ends the pad lifts off, and touches again when
-    the face comes back (located events "open" and "close", as of contacts with a normal-force law).
+    The pad constrains nothing: its normal force is that of the spring.  Where that falls to 0 the pad lifts off, and it
+    touches again when the face comes back (located events "open" and "close", as of contacts with a normal-force law).
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ class Pad(SpaceJoint):
         return (*self.seen(apart), *self.seen(normal), *by_axes)
 
     def parts_within(self) -> tuple[Element, ...]:
-        """What presses."""
+        """The spring and damper that press."""
         return (
             Presses(self.name, self, preload=self.preload, stiffness=self.stiffness, damping=self.damping),
         )

@@ -99,5 +99,5 @@ class Rod(SpaceJoint):
     length: Any
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Of unit slope along the rod."""
+        """Distance less its kept value, scaled to unit slope along the rod; kept 0."""
         return kept_distance(x, self.length)

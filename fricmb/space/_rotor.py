@@ -107,7 +107,7 @@ class Rotor(SpaceBody):
 
     @property
     def offsets(self) -> Mapping[str, Any]:
-        """Stations."""
+        """Stations by name."""
         return {name: (value,) for name, value in self.stations.items()}
 
     def station(self, name: str, distance: Any = None) -> SpacePoint:

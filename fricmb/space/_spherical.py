@@ -25,8 +25,8 @@ class Spherical(SpaceJoint):
         Of the ball, where there is friction: slip velocity = radius times the relative angular velocity, in the three
         directions of space.
     friction : FrictionLaw, optional
-        A law that sticks, with a cone in three directions; normal force = magnitude of the reaction.  What it brings is
-        the torque ``radius * sol.force(name)`` on a.
+        A law that sticks, with a cone in three directions; normal force = magnitude of the reaction.  It exerts the
+        torque ``radius * sol.force(name)`` on a.
 
     Examples
     --------
@@ -57,7 +57,7 @@ class Spherical(SpaceJoint):
         self._set("turning", found)
 
     def labels(self) -> tuple[str, ...]:
-        """Of space."""
+        """Directions of space."""
         return LETTERS
 
     def local_coordinates(self) -> tuple[LinearForm, ...]:
@@ -66,7 +66,7 @@ class Spherical(SpaceJoint):
         return (*self.apart(), *(form for forms in turns for form in forms))
 
     def define_constraint(self, x: tuple[Any, ...]) -> tuple[Any, ...]:
-        """None."""
+        """Distance between the points, kept 0."""
         return x[0:3]
 
     def define_slip(self, x: tuple[Any, ...]) -> tuple[Any, ...]:

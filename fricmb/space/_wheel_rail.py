@@ -29,9 +29,9 @@ class WheelRail(OneSided, SpaceJoint):
 
     The middle of the wheel, a station of a :class:`Rotor`, stays at the height ``rolling_radius`` above the rail; the
     reaction is the force of the rail upward.  Slip is the velocity of the wheel's material at its lowest point
-    relative to the rail, first along the wheel's plane ("along"), then along its axle ("across"); what force follows
-    is said by a law of creepage, ``friction=`` :class:`LinearCreep`, :class:`ShenHedrickElkins` or :class:`Polach` (or
-    by any law of two directions).
+    relative to the rail, first along the wheel's plane ("along"), then along its axle ("across"); the force follows
+    from a law of creepage, ``friction=`` :class:`LinearCreep`, :class:`ShenHedrickElkins` or :class:`Polach` (or by any
+    law of two directions).
 
     Scenes may stand where the vehicle is: ``speed`` is the speed at which the rail passes below it.  With ``speed=0``
     the rail rests and the vehicle moves.
@@ -40,7 +40,7 @@ class WheelRail(OneSided, SpaceJoint):
     ----------
     name : str
     a : station of a Rotor
-        Not the middle of the axle: on which side of it the wheel is says on which side its flange is.
+        Not at the middle of the axle: the side of the station says on which side the wheel has its flange.
     through : (float, float, float)
         A point of the rail, straight below the wheel's middle where the wheel stands centred.
     rolling_radius : float
@@ -120,7 +120,7 @@ class WheelRail(OneSided, SpaceJoint):
         return field == "speed"
 
     def labels(self) -> tuple[str, ...]:
-        """Of the wheel."""
+        """Directions of slip of the wheel: "along" and "across"."""
         return ("along", "across")
 
     def frame(self) -> Floats:

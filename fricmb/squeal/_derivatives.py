@@ -21,7 +21,7 @@ _MET = 1e-4
 
 @dataclass(frozen=True, kw_only=True)
 class Derivatives:
-    """Derivatives of one eigenvalue by parameters, for a change by all of their value (``p d/dp``).
+    """Derivatives of one eigenvalue by parameters, relative to the parameters' values (``p d/dp``).
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Derivatives:
     over: str = ""
 
     def rows(self) -> list[tuple[str, float, float, float, float, float]]:
-        """Name, value, growth, frequency, apart and threshold of each parameter; what does most first."""
+        """Name, value, growth, frequency, apart and threshold of each parameter, the most influential first."""
         threshold = np.full(len(self.names), np.nan) if self.threshold is None else self.threshold
         measure = self.apart if self.threshold is None else threshold
         order = np.argsort(-np.abs(measure), kind="stable")

@@ -43,7 +43,7 @@ class Pair:
 
 @dataclass(frozen=True, kw_only=True)
 class Feed:
-    """Growth rate of one mode as a sum.
+    """Growth rate of one mode as a sum over the parts of the scene.
 
     With the shape x and the force ``-D(lambda) x`` of a part, its share is ``-Im(x^H D x)/(2 omega x^H M x)``: the work
     of its force in one cycle over that cycle's kinetic energy, times a constant.  Conservative parts have none.
@@ -56,9 +56,10 @@ class Feed:
     parts : dict of str to float
         Share of each contact, damper, modal body and matrix element, in 1/time; above 0 it feeds.
     pairs : tuple of Pair
-        What the part of stiffness that is not symmetric brings, by pairs of modes of the structure; largest first.
+        Contribution of the non-symmetric part of the stiffness, by pairs of modes of the structure; largest first.
     velocity : float
-        What depends on velocities: damping, falling friction, law states.  The pairs and it add up to the growth rate.
+        Contribution of forces that depend on velocities: damping, falling friction, law states.  With the pairs it adds
+        up to the growth rate.
     """
 
     at: Mapping[str, float]

@@ -69,7 +69,7 @@ class Grid:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Number of values of each parameter, 1 for one that there is not."""
+        """Number of values of each parameter, 1 in place of a second one."""
         return len(self.values[0]), len(self.values[1]) if len(self.values) > 1 else 1
 
     def _at(self, i: int, j: int) -> dict[str, float]:

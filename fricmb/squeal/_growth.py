@@ -26,16 +26,16 @@ _SAMPLES = 24
 
 @dataclass(frozen=True, kw_only=True)
 class Growth:
-    """A mode that was set going by a small push.
+    """Growth of a mode in a run that starts with a small push along it.
 
     Attributes
     ----------
     at : dict of str to float
         Values of the parameters.
     eigenvalue : complex
-        What it should do: growth rate and angular frequency.
+        Predicted growth rate and angular frequency.
     measured : complex
-        What it did in the run, which knows nothing of eigenvalues: slopes of the logarithm of the mode's share of the
+        Those found in the run, which knows nothing of eigenvalues: slopes of the logarithm of the mode's share of the
         motion.
     solution : Solution
     t, share : (n_t,)
@@ -51,7 +51,7 @@ class Growth:
 
     @property
     def difference(self) -> float:
-        """Of the growth rates, in parts of that of the eigenvalue."""
+        """Difference of the growth rates, relative to that of the eigenvalue."""
         return abs(self.measured.real / self.eigenvalue.real - 1.0) if self.eigenvalue.real else np.inf
 
     def __str__(self) -> str:

@@ -42,7 +42,7 @@ class Saturation:
     cycle : Cycle or None
         The limit cycle that the run ended near, where Newton's method finds one.
     why : str
-        Why there is none; "" where there is.
+        Why there is no cycle; "" where there is one.
     solution : Solution
         The last piece of the run.
     """

@@ -53,7 +53,7 @@ def study(
     store: str | PathLike[str] | None = None,
     progress: bool = True,
 ) -> Study:
-    """Stability of steady sliding over one or two parameters, and what there is to ask about it.
+    """Study the stability of steady sliding over one or two parameters.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def study(
     Raises
     ------
     AnalysisError
-        If there is no steady sliding at any place, nothing that could slide, or an argument cannot be.
+        If there is no steady sliding at any place, nothing that could slide, or an argument that is not accepted.
     UnknownNameError
         For a parameter that is not there.
 
@@ -113,8 +113,8 @@ def study(
 class Study(Grid):
     """Stability of steady sliding over one or two parameters; made by :func:`study`.
 
-    Where ``at`` is asked for, it is a dict of values of parameters, which need not be places of the map; default: the
-    place where a mode grows most.  What was asked stands in the report.
+    An argument ``at`` is a dict of parameter values, which need not be places of the map; default: the place where a
+    mode grows most.  Every answer stands in the report.
 
     Attributes
     ----------
@@ -146,7 +146,7 @@ class Study(Grid):
 
     @answers
     def feed(self, at: Mapping[str, float] | None = None, *, frequency: float | None = None) -> Feed:
-        """What each contact and other part, and each pair of modes, adds to the growth rate of a mode.
+        """Contribution of each contact, other part, and pair of modes to the growth rate of a mode.
 
         Parameters
         ----------
@@ -338,7 +338,7 @@ class Study(Grid):
         seed: int = 0,
         workers: Any = None,
     ) -> Screening:
-        """Which of many parameters matter: elementary effects after Morris, by SALib (extra ``salib``).
+        """Rank parameters by their influence: elementary effects after Morris, by SALib (extra ``salib``).
 
         It costs ``trajectories * (n + 1)`` places, where Sobol' indices cost hundreds for each parameter.
 

@@ -36,8 +36,8 @@ class Uncertainty:
     frequency : (n,)
         Angular frequency of that mode.
     first, total : (n_names,) or None
-        Sobol' indices of the largest growth rate: which part of its variance each parameter makes by itself, and with
-        all others.
+        Sobol' indices of the largest growth rate: the share of its variance due to each parameter alone, and together
+        with the others.
     """
 
     at: Mapping[str, float]
@@ -55,7 +55,7 @@ class Uncertainty:
 
     @property
     def probability(self) -> float:
-        """That some mode grows."""
+        """Probability that some mode grows."""
         return self._parts(lambda part: float((part > 0.0).mean()))[0]
 
     @property

@@ -25,13 +25,13 @@ class Branch:
     ----------
     over : str
     to : float
-        Where it was to end.
+        Value of the parameter at which it was to end.
     cycles : tuple of Cycle
     special : tuple of Special
         In the same order; each also stands in ``places`` with the number of cycles before it.
     places : tuple of int
     ended : str
-        Why it ends where it does.
+        Why it ended where it does.
     """
 
     over: str
@@ -68,7 +68,7 @@ class Branch:
         special : Flip
             Of this branch.
         to : float, optional
-            Where to end; default: where this branch was to.
+            Value of the parameter at which to end; default: that of this branch.
         points : int
             Largest number of cycles.
         progress : bool

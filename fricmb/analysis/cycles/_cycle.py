@@ -52,7 +52,7 @@ class Cycle:
     solution : Solution
         One lap, from the section on.
     residual : float
-        By how much the lap misses its start, relative to the extent of the motion.
+        Distance of the lap's end from its start, relative to the extent of the motion.
     """
 
     scene: Scene

@@ -79,13 +79,13 @@ def lyapunov(
     ----------
     scene : Scene
     t_end : float
-        Length of the run over which rates are averaged, those of the part that is discarded apart.
+        Length of the run over which rates are averaged, without the part that is discarded.
     start : Solution, optional
         A run to go on from.
     intervals : int
         Number of intervals after each of which the deviations are made orthogonal again.
     discard : float
-        Part of ``t_end`` that is run before, for the motion and the directions to settle.
+        Length of the part run before, as a share of ``t_end``, for the motion and the directions to settle.
     rtol : float
     progress : bool
         Show a bar on the terminal.

@@ -49,7 +49,7 @@ class BlimanSorine(FrictionLaw):
         return self.f1 - self.f2
 
     def define_force(self, v: tuple[Any, ...], N: Any, z: tuple[Any, ...]) -> Any:
-        """Both parts."""
+        """Sum of the fast and the slow part."""
         x, y = chunks(z, len(v))
         return tuple(-N * (a + b) for a, b in zip(x, y, strict=True))
 

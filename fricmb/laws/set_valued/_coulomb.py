@@ -20,8 +20,8 @@ class Coulomb(FrictionLaw):
     mu_k : float, optional
         Coefficient of kinetic friction, 0 <= mu_k <= mu_s; None: follows ``mu_s``.
     insist : bool
-        Take ``mu_k > mu_s`` too.  Between both no force is at rest and none at slip, and what is solved is the limit of
-        ever faster changes between them: a contact that is held up to ``mu_k``, as for ``mu_s = mu_k``.
+        Accept ``mu_k > mu_s``.  A force between the two allows neither rest nor slip; the run then follows the limit of
+        ever faster changes between them, a contact that holds up to ``mu_k``, as for ``mu_s = mu_k``.
 
     Raises
     ------

@@ -42,8 +42,9 @@ class Offset(Shaped):
     Notes
     -----
     The normal force of the contact is a number or an expression.  In ``sol.energy`` what the offset takes is part of
-    the friction loss under a number, and input under an expression.  A break-away that exceeds slip by another amount
-    each way is no cone about one centre, and refused; a curve inside falls by the same amount both ways.
+    the friction loss under a number, and input under an expression.  A break-away that exceeds slip by different
+    amounts in the two senses is no cone about one centre, and is refused; a curve inside falls by the same amount in
+    both.
 
     References
     ----------
@@ -124,7 +125,7 @@ class Offset(Shaped):
         Raises
         ------
         LawError
-            If break-away exceeds slip by another amount forward than back.
+            If break-away exceeds slip by different amounts forward and back.
         """
         from fricmb.laws.set_valued import Coulomb
 
