@@ -59,7 +59,7 @@ class Formats:
         kind = format or self.by_ending(file)
         if kind is None:
             known = ", ".join(self.readers)
-            raise FileError(f"{file}: its ending is of no format that is read; say format=, one of {known}")
+            raise FileError(f"{file}: its ending names no format that can be read; give format=, one of {known}")
         return one_sentence(file, self.readers[kind], *arguments, packed=kind in self.packed)
 
 
@@ -76,7 +76,7 @@ def one_sentence(file: Path, reader: Reader, *arguments: Any, packed: bool = Fal
     except FricmbError as error:
         raise _on_one_line(error) from error.__cause__
     except MemoryError:
-        raise FileError(f"{file}: what it announces does not fit into memory") from None
+        raise FileError(f"{file}: it announces more data than fit into memory") from None
     except Exception as error:
         raise FileError(f"{file}: cannot be read ({type(error).__name__}: {shown(str(error))[1:-1]})") from error
 

@@ -188,7 +188,7 @@ def _check(priors: Any, sigma: Any, names: tuple[str, ...]) -> None:
         if pair.shape != (2,) or not np.isfinite(pair).all() or not pair[1] > 0.0:
             raise SceneError(f"priors: {name} has {shown(given)}; expected (mean, standard deviation > 0)")
     if priors and sigma is None:
-        raise SceneError("priors: what is known before can be weighed only against known errors; give sigma=")
+        raise SceneError("priors: they can be weighed only against known errors of the data; give sigma=")
 
 
 def _stages(measured: tuple[Measured, ...], window: Any, n_p: int) -> list[float]:

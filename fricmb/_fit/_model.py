@@ -222,7 +222,7 @@ class Model:
             except FricmbError:
                 continue
             return [(b - a) / (moved[i] - p[i]) for a, b in zip(middle, ends, strict=True)]
-        raise SceneError(f"parameters: the scene has no values beside {p[i]:g} of {self.names[i]}")
+        raise SceneError(f"parameters: the scene accepts no values next to {p[i]:g} of {self.names[i]}")
 
     def _beside(self, sol: Solution | None, p: Floats) -> tuple[Beside, ...]:
         """Runs with a value a little lower and higher, for signals that have no exact derivatives."""
@@ -242,7 +242,7 @@ class Model:
                 found.append((p[i], sol))
         (low, first), (high, last) = found
         if first is None or last is None or low == high:
-            raise SceneError(f"parameters: the scene has no values beside {p[i]:g} of {self.names[i]}")
+            raise SceneError(f"parameters: the scene accepts no values next to {p[i]:g} of {self.names[i]}")
         return Beside(width=float(high - low), first=first, last=last)
 
     def _one(self, m: Measured, sol: Solution | None, p: Floats, beside: tuple[Beside, ...]) -> tuple[Floats, Floats]:

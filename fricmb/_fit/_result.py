@@ -75,6 +75,6 @@ class Fit:
     def __str__(self) -> str:
         width = max(map(len, self.values))
         lines = [f"{name:{width}s}  {value:.8g} +- {self.std[name]:.2g}" for name, value in self.values.items()]
-        lines += [f"{name}: measured {value:.6g} above what it is" for name, value in self.offsets.items()]
+        lines += [f"{name}: zero of the measurement {value:+.6g}" for name, value in self.offsets.items()]
         lines.append(f"residuals {self.noise:.3g}, condition {self.condition:.3g}, {self.runs} runs")
         return "\n".join([*lines, *self.notes])

@@ -167,7 +167,7 @@ class Search:
             except FricmbError:  # mu_k above mu_s, say
                 continue
             return p
-        raise SceneError("parameters: hardly any values within the bounds are ones that the scene accepts")
+        raise SceneError("parameters: the scene accepts hardly any values within the bounds")
 
     def _solve(self, model: Model, p: Floats, *, last: bool) -> tuple[Floats, Floats]:
         """Least squares in one window: values, and the Jacobian there; by exact derivatives in the ``last`` one."""

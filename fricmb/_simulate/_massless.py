@@ -108,8 +108,8 @@ def _check_relaxed(body: Body, spring: Any, held: Any) -> None:
     sign = 1.0 if spring.a is held else -1.0
     if abs(way - sign * float(value_of(spring.length))) > 1e-12 * max(1.0, abs(way)):
         raise SceneError(
-            f"Body {body.name!r}: mass is 0, and {spring.name!r} is not relaxed at the start, where the slider that it"
-            " is begins: position must be that at which its spring is relaxed"
+            f"Body {body.name!r}: mass is 0, a slider, whose spring {spring.name!r} is not relaxed at the start;"
+            " position must be the one at which it is"
         )
 
 

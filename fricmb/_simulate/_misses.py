@@ -113,8 +113,8 @@ def _passes(run: Trajectory, near: float) -> Iterator[str]:
         if times:
             more = f" (and {len(times) - 1} times more)" if len(times) > 1 else ""
             yield (
-                f"contact {problem.contact_names[k]!r} passes rest at t = {min(times):.6g}{more} nearer than the"
-                " tolerance tells: whether it sticks there or slips on hangs on the error of the run"
+                f"contact {problem.contact_names[k]!r} passes rest at t = {min(times):.6g}{more} within the"
+                " tolerance: whether it sticks there or slips on depends on the error of the run"
             )
 
 

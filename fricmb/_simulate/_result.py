@@ -109,7 +109,7 @@ def find_notes(sol: Solution) -> tuple[str, ...]:
     try:
         notes = ledger_note(sol, rtol)
     except IntegrationError as error:
-        notes = (f"energies are beyond what numbers hold: {error.reason}",)
+        notes = (f"energies are too large for floating-point numbers: {error.reason}",)
     return (*notes, *lock_notes(sol), *centre_notes(sol), *digit_notes(run, rtol), *miss_notes(sol, run, rtol))
 
 

@@ -141,7 +141,9 @@ def whole_system(sol: Solution, who: str) -> System:
     """
     placed = sol.run.pieces[-1].mechanics.placed  # type: ignore[attr-defined]
     if placed.is_mechanism:
-        raise AnalysisError(f"{who}: takes no bodies that turn and joints; sol.energy has the ledger of such a run")
+        raise AnalysisError(
+            f"{who}: does not take scenes with joints or bodies that turn; sol.energy has the ledger of such a run"
+        )
     system = build(placed)
     missing = [name for name in system.dof_names if name not in sol.names.dof_index]
     if missing:

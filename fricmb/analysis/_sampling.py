@@ -152,7 +152,7 @@ def _warn(found: Samples, of_contact: bool) -> None:
     if found.folded > WARNED:
         warnings.warn(
             f"{found.name}: {100 * found.folded:.2g} % of its power lies above pi/dt = {np.pi / found.dt:.4g} and"
-            " appears at frequencies where it is not; take a smaller dt",
+            " appears at lower frequencies; take a smaller dt",
             AliasingWarning,
             stacklevel=4,
         )

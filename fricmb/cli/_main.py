@@ -44,7 +44,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _complain(str(error), BAD_INPUT)
     except KeyboardInterrupt:
         return _complain("interrupted", 130)
-    return _complain("standard output is closed: what was to be said there is lost", BAD_INPUT) if closed else status
+    return _complain("standard output is closed: output to it is lost", BAD_INPUT) if closed else status
 
 
 @contextlib.contextmanager
@@ -84,7 +84,7 @@ def _flush() -> None:
     except BrokenPipeError:
         raise
     except OSError as error:
-        raise OSError(f"standard output: {error.strerror}: the last of what was to be said there is lost") from error
+        raise OSError(f"standard output: {error.strerror}: its last output is lost") from error
 
 
 def _let_go() -> None:
@@ -250,7 +250,7 @@ def _add_squeal(commands: _Commands) -> None:
     sub.add_argument("--highest", type=float, metavar="W", help="angular frequency above which modes are left out")
     sub.add_argument("--growth", action="store_true", help="compare the rate of growth with that in a run")
     sub.add_argument("--saturation", action="store_true", help="run until the vibration keeps its size")
-    spread = "a parameter that is not known for sure: a relative standard deviation or LOW:HIGH; may be repeated"
+    spread = "an uncertain parameter: a relative standard deviation or LOW:HIGH; may be repeated"
     sub.add_argument("--uncertain", action="append", default=[], metavar="NAME=SPREAD", help=spread)
     points = "points of each of eight scramblings, a power of 2 (default: %(default)d)"
     sub.add_argument("--samples", type=int, default=32, metavar="N", help=points)

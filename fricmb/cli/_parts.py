@@ -18,7 +18,7 @@ PURPOSES: dict[str, tuple[str, ...]] = {
     "springs and dampers": (
         "Spring", "Damper", "PointSpring", "PointDamper", "TorsionSpring", "TorsionDamper", "MatrixElement",
     ),
-    "ends of a way, play, and what impacts obey": ("Stop", "Backlash", "ImpactLaw"),
+    "stops, play, and the law of impact": ("Stop", "Backlash", "ImpactLaw"),
     "transmissions": ("Gear", "Rope"),
     "drives and loads": (
         "Force", "Torque", "Gravity", "DrivenAngle", "DrivenSlide", "space.Torque", "space.DrivenSpin",

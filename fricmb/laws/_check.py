@@ -93,7 +93,8 @@ def check_copies(law: Any) -> None:
         raise LawError(f"{law._label()}: copies must return a dict of names and whole numbers; got {shown(found)}")
     for name, count in found.items():
         if name not in law.states:
-            raise LawError(f"{law._label()}: copies of what is no state: {unknown_name('name', name, law.states)}")
+            wrong = unknown_name("name", name, law.states)
+            raise LawError(f"{law._label()}: copies names an undeclared state: {wrong}")
         if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
             raise LawError(f"{law._label()}: copies of {name} must be a whole number of at least 1; got {shown(count)}")
 

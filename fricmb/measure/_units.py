@@ -41,7 +41,7 @@ def in_units(found: Measured, units: str) -> Measured:
         turned = np.r_[np.ones(3), np.full(modes.shapes.shape[2] - 3, 1.0 / of_length)]
         modes = replace(modes, masses=modes.masses * (of_force / of_length), shapes=modes.shapes * turned)
     unknown = sum(not x.quantity for x in found.signals) + sum(not x.kind for x in found.frfs)
-    note = f"{unknown} signals or responses of which the file does not say what they are keep their units"
+    note = f"{unknown} signals or responses keep their units, since the file does not state their quantities"
     return replace(
         found,
         signals=tuple(replace(x, y=x.y * sizes.get(x.quantity, 1.0), unit=_label(x, sizes)) for x in found.signals),

@@ -88,7 +88,7 @@ class Crew:
             while not failed and (task := shares.next(number)) is not None:
                 answer = _answer(self._processes[number], task)
                 if not answer:
-                    failed.append(f"compile: the process that was at {task!r} ended; its last words are above")
+                    failed.append(f"compile: the process compiling {task!r} ended; its last output is above")
                     return
                 with lock:
                     report(task, json.loads(answer))

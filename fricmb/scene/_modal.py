@@ -131,7 +131,7 @@ class ModalBody(Part):
         if matrix.shape != (n, n):
             self._refuse("damping", matrix.shape, f"a matrix of shape ({n}, {n}), or None")
         if np.any(value_of(self.damping_ratios)):
-            self._refuse("damping_ratios", self.damping_ratios, "0 beside a damping matrix, which says all")
+            self._refuse("damping_ratios", self.damping_ratios, "0 with a damping matrix, which takes their place")
         self._set("damping", matrix)
 
     def _check_reduction(self, n: int) -> None:

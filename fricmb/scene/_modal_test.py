@@ -115,7 +115,7 @@ def _masses(label: str, modes: Modes, turn: Any, scale: Any) -> Any:
     if against.size:
         which = ", ".join(f"{modes.hertz[i]:.6g}" for i in against[:6])
         raise SceneError(
-            f"{label}: scale says that it is of a driving point, {where}, and is none: residues at {which} Hz have the"
+            f"{label}: scale is labelled as of a driving point, {where}, but residues at {which} Hz have the"
             " sign of motion against the force"
         )
     own = (modes.at(scale.node, scale.axis.lstrip("-"))[0] * turn).real
@@ -198,7 +198,9 @@ def compare(body: ModalBody, test: Any, points: Any) -> Comparison:
             here, there = f"{by_node[one.node]}.{one.axis}", f"{by_node[one.reference]}.{one.reference_axis}"
             responses.append((one, frf(body, here, there, one.f, one.kind, True)))
     if modes is None and not responses:
-        raise SceneError(f"{label}: no response of the test is of two of its points, with axes and a kind; see points=")
+        raise SceneError(
+            f"{label}: no response of the test lies between two of its points, with axes and a kind; see points="
+        )
     return Comparison(
         mac=mac,
         pairs=pairs,

@@ -60,7 +60,7 @@ class OneSided(Joint):
         if self.mu_impact is not None:
             self._set("mu_impact", self._number("mu_impact", self.mu_impact, minimum=0.0))
         elif self.friction is not None and not isinstance(self.friction, Coulomb):
-            accepted = "given: the friction law has no one coefficient, and slip speeds in an impact are no part of it"
+            accepted = "given: this friction law has no single coefficient, and knows no slip speed within an impact"
             self._refuse("mu_impact", None, accepted)
         if self.friction is not None and self.slip_rows > 1:
             self._refuse("restitution", self.restitution, "left out where slip has two directions")

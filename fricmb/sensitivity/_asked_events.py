@@ -65,6 +65,6 @@ def _slope(here: Derivatives, sol: Any, signal: str, column: str, seen: Any) -> 
     """Derivative of a motion at fixed times; that of a driven one is 0, unless a parameter moves it."""
     if signal.removesuffix(".velocity") in sol.names.signals:
         raise SceneError(
-            f"sensitivities: the event that reads {signal!r} has none, since the motion is driven; state it in fm.t"
+            f"sensitivities: the event that reads {signal!r} has no derivative: the motion is driven; state it in fm.t"
         )
     return here.signal(sol.names, signal, column, seen.record.samples)

@@ -246,8 +246,8 @@ class Constrained(Equations):
             moved[first : first + n] -= B @ total(slopes, moved, self.n_y)
         if self._starts_elsewhere() and moved[:n].any():
             raise SceneError(
-                "sensitivities: the start was moved to satisfy the joints, and a parameter changes positions there: of"
-                " such starts there are derivatives by what leaves positions as they are; declare a start that fits"
+                "sensitivities: the start was moved to satisfy the joints, and a parameter changes positions there:"
+                " only parameters that leave positions alone have derivatives then; declare a start that fits"
             )
         return moved
 

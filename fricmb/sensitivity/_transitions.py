@@ -198,8 +198,8 @@ class Transitions:
             by = ", ".join(f"{columns[j]!r} to {off[j] / sizes[j]:.0e}" for j in open_to.tolist())
             moves_on = PASS in self.happened[i].kinds
             self.notes.append(
-                f"at t = {self.happened[i].t:.10g} slip in two directions ends before its direction has settled: of the"
-                f" derivatives of that time, those by {by} of their size are all that is known"
+                f"at t = {self.happened[i].t:.10g} slip in two directions ends before its direction has settled:"
+                f" derivatives of that time are known only to a part of their size: by {by}"
                 + (" (and no more of what follows)" if moves_on else " (what follows is not affected)")
             )
 

@@ -122,7 +122,7 @@ class Signal(Arithmetic):
         FileError
             Names the file, the line or column and what was expected.
         SceneError
-            For a time that stands twice or falls, a value that is not finite.
+            For a time that repeats or falls, or a value that is not finite.
         """
         from fricmb.signal._read import read_columns
 
@@ -161,7 +161,7 @@ class Signal(Arithmetic):
         beyond = times[(times < first - margin) | (times > last + margin)]
         if self.outside == "refuse" and beyond.size:
             raise SceneError(
-                f"Signal {self.name!r}: known from t = {first:.10g} to {last:.10g}, asked for at"
+                f"Signal {self.name!r}: known from t = {first:.10g} to {last:.10g}, not at"
                 f' {float(beyond[0]):.10g}; accepted is a time inside, or fm.Signal(..., outside="hold") or "zero"'
             )
 
@@ -359,7 +359,7 @@ def _check_rising(name: str, t: Floats) -> None:
     if not bad.size:
         return
     i = int(bad[0])
-    what = f"t = {t[i]:.10g} stands twice" if t[i + 1] == t[i] else f"t falls from {t[i]:.10g} to {t[i + 1]:.10g}"
+    what = f"t = {t[i]:.10g} occurs twice" if t[i + 1] == t[i] else f"t falls from {t[i]:.10g} to {t[i + 1]:.10g}"
     raise SceneError(
         f"Signal {name!r}: {what} (places {i} and {i + 1}; {bad.size} such place(s) in all); accepted are rising times:"
         " sort them (numpy.argsort), or leave repeated ones out (numpy.unique)"

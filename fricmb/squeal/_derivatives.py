@@ -62,7 +62,7 @@ class Derivatives:
         return [(self.names[i], *(float(column[i]) for column in columns)) for i in order.tolist()]
 
     def __str__(self) -> str:
-        met = f"eigenvalue {self.eigenvalue:.6g}, partner {self.partner:.6g}; for a change by all of a value"
+        met = f"eigenvalue {self.eigenvalue:.6g}, partner {self.partner:.6g}; relative to the values of the parameters"
         more = f" {'of ' + self.over:>14}" if self.threshold is not None else ""
         lines = [met, f"{'parameter':28} {'value':>12} {'of growth':>12} {'of frequency':>12} {'apart':>12}{more}"]
         for name, *numbers in self.rows():

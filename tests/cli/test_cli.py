@@ -198,7 +198,7 @@ def test_every_part_is_listed_by_what_it_is_for():
 def test_list_equations_plan(capsys):
     status, text, _ = run(capsys, "list")
     assert status == 0
-    ends = "ends of a way, play, and what impacts obey: Stop, Backlash"
+    ends = "stops, play, and the law of impact: Stop, Backlash"
     for name in ("brake4dof", "stick_slip_chain", "Coulomb", "bdf", ends):
         assert name in text
     status, text, _ = run(capsys, "list", "parts")

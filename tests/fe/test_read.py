@@ -205,7 +205,7 @@ def test_arguments():
         fm.fe.read("nowhere.op4")
     with pytest.raises(fm.SceneError, match="format must be one of npz"):
         fm.fe.read(DATA / "chain.sti", format="abacus")
-    with pytest.raises(FileError, match="its ending is of no format"):
+    with pytest.raises(FileError, match="its ending names no format"):
         fm.fe.read(DATA / "chain.inp")
     with pytest.raises(FileError, match="units must be 'SI' or"):
         fm.fe.read(DATA / "chain.sti", units="stone-furlong-fortnight")

@@ -28,7 +28,7 @@ def test_an_offset_is_found_beside_the_parameters(truth):
         assert found.values[name] == pytest.approx(value, abs=1e-6)
     assert found.offsets["mass.x"] == pytest.approx(0.37, abs=1e-6)
     assert np.abs(found.residuals["mass.x"]).max() < 1e-5
-    assert "mass.x: measured 0.37 above what it is" in str(found)
+    assert "mass.x: zero of the measurement +0.37" in str(found)
     # without it the parameters make up for what is not theirs
     plain = fitted(truth, data, starts=1)
     assert abs(plain.values["spring.stiffness"] - TRUE["spring.stiffness"]) > 0.02

@@ -132,7 +132,7 @@ def test_no_law_of_the_catalogue_is_refused(name):
         ({"states": ["z"]}, "states must be a tuple of names"),
         ({"states": ("z", "z")}, "states must be different names"),
         ({"states": ("z",), "scalars": ("w",)}, "scalars: unknown name 'w'"),
-        ({"states": ("z",), "copies": lambda law: {"w": 2}}, "copies of what is no state: unknown name 'w'"),
+        ({"states": ("z",), "copies": lambda law: {"w": 2}}, "copies names an undeclared state: unknown name 'w'"),
         ({"states": ("z",), "copies": lambda law: {"z": 1.5}}, "copies of z must be a whole number"),
         ({"positive": ("mu_",)}, "positive: unknown name 'mu_'; did you mean 'mu'"),
         ({"dimensions": (5,)}, "dimensions must be a tuple of 1, 2, 3"),

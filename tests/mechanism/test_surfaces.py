@@ -49,7 +49,7 @@ def test_a_joint_not_declared_to_open_ends_the_run():
 def test_contact_made_again_ends_the_run():
     ball = fm.RigidBody("ball", mass=1.0, inertia=1.0, position=(0.0, 1.0), velocity=(1.0, 0.0))
     floor = fm.RollerOnLine("floor", ball, push_only=True, when_lost="open")
-    with pytest.raises(fm.IntegrationError, match="'floor' is made again, and impacts are not computed") as caught:
+    with pytest.raises(fm.IntegrationError, match="'floor' closes again, and impacts are not computed") as caught:
         fm.simulate(fm.Scene("drop", [ball, floor, fm.Gravity("g")]), t_end=1.0)
     assert caught.value.t == pytest.approx(np.sqrt(2.0 / G), abs=1e-9)
 

@@ -31,7 +31,7 @@ def test_values_between_and_outside():
 def test_values_outside_are_refused_unless_said():
     signal = fm.Signal(T, wave(T), name="push")
     for x in (-0.1, [1.0, 4.1], np.inf):
-        with pytest.raises(fm.SceneError, match="Signal 'push': known from t = 0 to 4, asked for at"):
+        with pytest.raises(fm.SceneError, match="Signal 'push': known from t = 0 to 4, not at"):
             signal(x)
     # an end is inside, round-off aside
     assert signal(4.0 * (1.0 + 1e-15)) == pytest.approx(float(wave(4.0)), abs=1e-12)
@@ -53,7 +53,7 @@ def test_expressions_print_differentiate_and_evaluate():
     ("t", "y", "given", "said"),
     [
         ([0.0, 1.0, 2.0], [0.0, np.nan, 1.0], {}, r"y holds nan at place 1 \(t = 1\), 1 such"),
-        ([0.0, 1.0, 1.0], [0.0, 1.0, 1.0], {}, r"t = 1 stands twice \(places 1 and 2"),
+        ([0.0, 1.0, 1.0], [0.0, 1.0, 1.0], {}, r"t = 1 occurs twice \(places 1 and 2"),
         ([0.0, 2.0, 1.0], [0.0, 1.0, 1.0], {}, "t falls from 2 to 1"),
         ([0.0, 1.0], [0.0, 1.0, 1.0], {}, "as many values as t, 2, got 3"),
         ([0.0, 1.0], [0.0, 1.0], {"kind": "cubic"}, "cubic takes at least 4 values, got 2"),

@@ -206,7 +206,7 @@ def _run_in(flow: Flow, period: float | None) -> Solution:
         omega = build(flow.scene).problem.omega
         slow = omega[omega > 0.0]
         if not slow.size:
-            raise AnalysisError(f"{_WHO}: the scene has no oscillation to tell how long to run; give start=")
+            raise AnalysisError(f"{_WHO}: the scene has no oscillation that tells how long to run; give start=")
         period = 2.0 * np.pi / float(slow.min())
     return simulate(flow.scene, t_end=_RUN_IN * period, **{**flow.options, "rtol": 1e-6})
 

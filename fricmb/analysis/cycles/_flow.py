@@ -119,4 +119,5 @@ def check_scene(scene: Scene, who: str) -> None:
     turn = [part.name for part in scene.parts if isinstance(part, RigidBody | SpaceBody)]
     held = [part.name for part in scene.parts if isinstance(part, Joint) and not part.is_rigid]
     if scene.is_mechanism and (turn or held):
-        raise AnalysisError(f"{who}: takes no bodies that turn and joints; here {', '.join(map(repr, turn + held))}")
+        listed = ", ".join(map(repr, turn + held))
+        raise AnalysisError(f"{who}: does not take scenes with joints or bodies that turn; here {listed}")

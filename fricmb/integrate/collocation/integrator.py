@@ -46,7 +46,7 @@ from fricmb.integrate.trajectory import Trajectory, Transitions
 _FAILURES = {
     UNDERFLOW: "the step fell to nothing: the direction of slip cannot be resolved",
     ENDLESS: "transitions without end at one instant",
-    NOT_FINITE: "the state grew beyond what numbers hold",
+    NOT_FINITE: "the state grew beyond floating-point numbers",
 }
 
 

@@ -64,7 +64,7 @@ def failure_text(code: int, problem: Problem, k: Any, y: Any, out: Any) -> str:
     if code == FAIL_HIT:
         opened = (joints.hands_over == 1) & (joints.dropped[np.minimum(row, len(y.lam) - 1)] == 2)
         name = joints.names[int(np.argmin(np.where(opened, out.gap, np.inf)))]
-        return f"contact of {name!r} is made again, and impacts are not computed without restitution="
+        return f"contact of {name!r} closes again, and impacts are not computed without restitution="
     if code == FAIL_SINGULAR:
         names_now = ", ".join(repr(name) for name in singular_joints(problem, float(y.t), y.q, y.v))
         risen = (out.sigma_top / max(out.sigma, 1e-300)) ** 2

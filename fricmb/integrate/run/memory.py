@@ -81,6 +81,6 @@ class Footprint:
         if left is None or left > 1.2 * held:
             return None
         return (
-            f"memory: the result has taken {held / 1e9:.2g} GB and only {left / 1e9:.2g} GB are left, which putting it "
-            "together needs; t_eval= with dense=False, or on_chunk=, keeps less"
+            f"memory: the result has taken {held / 1e9:.2g} GB and assembling it needs more than the "
+            f"{left / 1e9:.2g} GB left; t_eval= with dense=False, or on_chunk=, keeps less"
         )

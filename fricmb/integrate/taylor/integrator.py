@@ -42,7 +42,7 @@ from fricmb.integrate.trajectory import Counters, Trajectory
 FAILURES = {
     CROWDED: "more than {limit} transitions in one step: too dense to be located one by one (take radau)",
     WIDE: "a transition is felt by too many degrees of freedom within one step (take radau)",
-    NOT_FINITE: "the state grew beyond what numbers hold",
+    NOT_FINITE: "the state grew beyond floating-point numbers",
     TOO_SHORT: "the step size fell below round-off: a function of time cannot be followed",
     CREEPS: "the direction of slip turns so fast that steps are next to nothing (take radau or bdf)",
     TOO_STEEP: "the coefficient of friction of contact {contact!r} is followed over slip speeds of {range:.1e} alone: "

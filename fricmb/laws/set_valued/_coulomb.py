@@ -75,8 +75,8 @@ class Coulomb(FrictionLaw):
         if not self.insist:
             return ""
         return (
-            f"mu_k = {self.slip_limit():g} is above mu_s = {float(value_of(self.mu_s)):g}: it sticks up to mu_k, which"
-            " is what changes between both come to"
+            f"mu_k = {self.slip_limit():g} is above mu_s = {float(value_of(self.mu_s)):g}: the contact sticks up to"
+            " mu_k, the limit of ever faster changes between stick and slip"
         )
 
     def coefficient(self, r: Any, normal_force: Any = 1.0) -> Any:
