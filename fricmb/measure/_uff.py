@@ -21,7 +21,7 @@ QUANTITIES = {8: "displacement", 9: "force", 11: "velocity", 12: "acceleration",
 #: The line before and behind each dataset.
 _MARK = re.compile(rb"^ {4}-1 *\r?$", re.MULTILINE)
 #: Types of functions of dataset 58.
-TIME_RESPONSE, FREQUENCY_RESPONSE = 1, 4
+FREQUENCY_RESPONSE = 4
 
 
 def read(path: Path, over: tuple[float, float] | str | None) -> Measured:

@@ -199,7 +199,7 @@ class Transitions:
             moves_on = PASS in self.happened[i].kinds
             self.notes.append(
                 f"at t = {self.happened[i].t:.10g} slip in two directions ends before its direction has settled:"
-                f" derivatives of that time are known only to a part of their size: by {by}"
+                f" derivatives of that time are known only roughly: by {by} of their size"
                 + (" (and no more of what follows)" if moves_on else " (what follows is not affected)")
             )
 

@@ -1,12 +1,14 @@
 """Where fun jumps and drives y to the jump from both sides, a run ends with a sentence; elsewhere it goes on."""
 
 import warnings
+from types import SimpleNamespace
 
 import numba
 import numpy as np
 import pytest
 
 import fricmb as fm
+from fricmb.dae._chattering import Chattering
 
 
 def sliding(t, y, yp):
@@ -49,16 +51,14 @@ def test_fast_oscillations_and_jumps_that_are_crossed_are_none(omega):
     assert found.success, found.message
 
 
-def test_noise_beside_a_long_span_is_none():
-    """Robertson's reactions to 1e11, beside a component that is 0 but for round-off."""
-
-    def fun(t, y, yp):
-        a, b = 0.04 * y[0], 1e4 * y[1] * y[2]
-        still = yp[3] + y[3] * np.sin(t)
-        return np.array([yp[0] + a - b, yp[1] - a + b + 3e7 * y[1] ** 2, y[0] + y[1] + y[2] - 1.0, still])
-
-    found = fm.solve_dae(fun, (0.0, 1e5), [1.0, 0.0, 0.0, 1e-30], rtol=1e-6, atol=[1e-8, 1e-14, 1e-6, 1e-6])
-    assert found.success, found.message
+@pytest.mark.parametrize(("size", "found"), [(1e-13, False), (1e-3, True)])
+def test_noise_within_the_tolerance_is_none(size, found):
+    """Y' changes its sign at every step: chattering where y moves by more than its tolerance, else round-off."""
+    n = 400
+    signs = (-1.0) ** np.arange(n)
+    record = SimpleNamespace(size=n, t=1.0 + 1e-9 * np.arange(n), y=np.zeros((n, 1)), yp=size * signs[:, None])
+    said = Chattering(1, 0.0, 1e5).look(record, 1, np.array([1e-6]), np.array([1e-6]))
+    assert ("the derivative of y[0] jumps" in said) == found
 
 
 def test_no_warnings_come_out_of_trials():
