@@ -8,6 +8,11 @@ from typing import Any
 from fricmb.scene._joint import Joint
 from fricmb.scene._joints import Prismatic
 from fricmb.scene._resistance import Resistance
+from fricmb.scene._rope_ends import RopeEnd, RopePull, RopeSpan
+from fricmb.values._same import is_same
+
+#: What stands beside a rope.
+ROPE = RopeEnd, RopeSpan, RopePull
 
 
 def with_companions(parts: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -26,7 +31,8 @@ def with_companions(parts: tuple[Any, ...]) -> tuple[Any, ...]:
             continue
         found.append(part)
         for one in asked.get(id(part), ()):
-            found.append(_kept(here.get(one.name), one))
+            old = here.get(one.name)
+            found.append(_beside_rope(part, old, one) if isinstance(one, ROPE) else _kept(old, one))
     return tuple(found)
 
 
@@ -55,10 +61,25 @@ def _kept(old: Any, new: Any) -> Any:
     return old if _alike(old, new) else replace(new, friction=old.friction)
 
 
+def _beside_rope(rope: Any, old: Any, new: Any) -> Any:
+    """The end that a rope has by now; the span or the pull that is there with it, or else the declared one with it."""
+    ends = {end.name: end for end in (rope.a, rope.b) if isinstance(end, RopeEnd)}
+    if isinstance(new, RopeEnd):
+        return ends[new.name]
+    same = type(old) is type(new) and is_same(old.declared, new.declared)
+    return old if same and ends.get(_end(old).name) is _end(old) else new.with_ends(ends)
+
+
+def _end(part: Any) -> RopeEnd:
+    """The rope's end of a span or a pull."""
+    end: RopeEnd = part.b if isinstance(part, RopeSpan) else part.body
+    return end
+
+
 def _alike(one: Any, other: Any) -> bool:
     return one.name == other.name and all(a is b for a, b in zip(one.declared, other.declared, strict=True))
 
 
 def _belongs(part: Any) -> bool:
     """Whether a part stands beside another one."""
-    return isinstance(part, Resistance)
+    return isinstance(part, (Resistance, *ROPE))

@@ -7,8 +7,11 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from fricmb._calls import answers
 from fricmb._facade import facade
+from fricmb.errors import unknown_name
 from fricmb.integrate import Samples
 from fricmb.integrate.problem import Codes, Floats
 from fricmb.solution._derivatives import Derivatives
@@ -133,6 +136,25 @@ class Solution(Signals):
         SceneError
             For the name of another part, or of one with restitution (see :meth:`impulse`).
         """
+
+    @answers
+    def tensions(self, name: str) -> Floats:
+        """Tensions (2, n_t) of a :class:`Rope` at its drum: on the first and on the second side, >= 0.
+
+        Parameters
+        ----------
+        name : str
+
+        Raises
+        ------
+        UnknownNameError
+            For the name of another part; lists the ropes.
+        """
+        ropes = [joint.name for joint in self.scene.joints if type(joint).__name__ == "Rope"]
+        if not isinstance(name, str) or name not in ropes:
+            raise unknown_name("rope", name, ropes)
+        mean, difference = self.reaction(name)[0], self.force(name)[0]
+        return np.array([mean + difference / 2, mean - difference / 2])
 
     @answers
     def columns(self, names: Iterable[str] | None = None) -> dict[str, Floats | Codes]:

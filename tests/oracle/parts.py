@@ -418,6 +418,46 @@ def rope() -> Case:
     return made("Rope", parts, ("b.x",), problem)
 
 
+def elastic_rope() -> Case:
+    """The same where the first block hangs on a span that stretches; both are coordinates then."""
+    a, b = fm.Body("a", mass=1.2, velocity={"x": -0.2}), fm.Body("b", mass=0.7, velocity={"x": 0.2})
+    parts = [
+        a, b, fm.Rope("c", (a, b), axes="xx", angle=2.0, friction=0.2, stiffness=(60.0, None), pretension=3.0),
+        fm.Force("fa", a, axis="x", value=3.0), fm.Force("fb", b, axis="x", value=3.0 + 2.5 * sympy.sin(1.3 * T)),
+    ]  # fmt: skip
+
+    def span(q: Any) -> float:
+        return 3.0 + 60.0 * float(q[0] + q[1])
+
+    def pull(t: float) -> float:
+        return 3.0 + 2.5 * math.sin(1.3 * t)
+
+    def load(t: float, q: Any, v: Any, a: Any) -> float:
+        return math.tanh(0.2) * (span(q) + pull(t) - 0.7 * a[1])
+
+    contact = on_ground(2, axis=1, reaction=load, mu=constant(1.0), mu_s=constant(1.0))
+    act = lambda t, q, v: [3.0 - span(q), pull(t) - span(q)]  # noqa: E731
+    problem = numbers([0.0, 0.0], [-0.2, 0.2], 8.0, (contact,), act, [[1.2, 0.0], [0.0, 0.7]])
+    return made("Rope, elastic", parts, ("a.x", "b.x"), problem)
+
+
+def pulled_rope() -> Case:
+    """A block on a rope whose other end is pulled by a tension."""
+    a = fm.Body("a", mass=1.2, velocity={"x": -0.2})
+    tension = 3.0 + 2.5 * sympy.sin(1.3 * T)
+    parts = [a, fm.Rope("c", (a, tension), axes="x", angle=2.0, friction=0.2), fm.Force("fa", a, axis="x", value=3.0)]
+
+    def pull(t: float) -> float:
+        return 3.0 + 2.5 * math.sin(1.3 * t)
+
+    def load(t: float, q: Any, v: Any, a: Any) -> float:
+        return math.tanh(0.2) * (3.0 - 1.2 * a[0] + pull(t))
+
+    contact = on_ground(1, reaction=load, mu=constant(1.0), mu_s=constant(1.0))
+    problem = numbers([0.0], [-0.2], 8.0, (contact,), lambda t, q, v: [3.0 - pull(t)], [[1.2]])
+    return made("Rope, pulled", parts, ("a.x",), problem)
+
+
 def gear() -> Case:
     """A wheel on a dry pin of constant load drives another: a = -1.5 b."""
     a = fm.RigidBody("a", mass=2.0, inertia=0.5, points={"pin": (0.0, 0.0)})
@@ -530,6 +570,7 @@ CASES: dict[str, Callable[[], Case]] = {
     "normal.Spring": normal_spring, "normal.Hertz": hertz, "normal.Constant": constant_load,
     "normal.Prescribed": prescribed, "Fixed": welded, "Prismatic": prismatic, "RollerOnLine": on_line,
     "RollerOnCircle": on_circle, "Rod": rod, "Gear": gear, "Rope": rope, "Wheel": wheel,
+    "Rope, elastic": elastic_rope, "Rope, pulled": pulled_rope,
     "RollingResistance": rolling_resistance,
     "DrivenAngle": driven_angle, "DrivenSlide": driven_slide,
 }  # fmt: skip

@@ -232,7 +232,28 @@ def _first_speeds(problem: Problem, start: Start, t_end: float) -> Floats:
     """Speeds (n,) that the loads of the start would bring about in a first step from rest."""
     v = np.zeros(problem.n)
     a = _without_friction(problem, start, start.t, v)
-    return first_step(v, a, t_end - start.t, PART) * np.abs(a) if np.isfinite(a).all() else v
+    if not np.isfinite(a).all():
+        return v
+    return np.minimum(first_step(v, a, t_end - start.t, PART), _yielding_times(mechanism_of(problem))) * np.abs(a)
+
+
+#: What is lighter than this part of the heaviest takes no speeds beyond those at which its springs and dampers yield.
+FEATHER = 1e-6
+
+
+def _yielding_times(m: Mechanism) -> Floats:
+    """Times (n,) for which the accelerations of the start last: infinite, but for what is light beside everything else.
+
+    An end of a rope without mass of its own comes to its speed at once, and not by ``a h`` to a billion times that.
+    """
+    mass, time = masses(m), np.full(m.n, np.inf)
+    light = mass < FEATHER * mass.max(initial=0.0)
+    for entries, power in ((m.K, 0.5), (m.C, 1.0)) if light.any() else ():
+        own = (entries.row == entries.column) & (entries.row < m.n)
+        rate = np.bincount(entries.row[own], entries.value[own], m.n) / mass
+        stiff = light & (rate > 0.0)
+        time[stiff] = np.minimum(time[stiff], rate[stiff] ** -power)
+    return time
 
 
 def _slip_by(problem: Problem, start: Start, *v: Floats) -> Floats:
