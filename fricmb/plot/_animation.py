@@ -270,13 +270,17 @@ def draw_scene(scene: Any, *, ax: Axes | None = None) -> Figure:
     sketch = sketch_of_scene(scene)
     figure, panel = canvas(sketch, ax)
     drawing = Drawing(sketch, panel)
-    taken: dict[Any, int] = {}
+    taken: list[tuple[Floats, float]] = []
     for touch in _named(sketch.touches):
-        at = tuple(sketch.where(touch.at, 0).tolist())
-        k = taken[at] = taken.get(at, -1) + 1  # names at one place stand below one another
+        at = sketch.where(touch.at, 0)
         away = drawing.points * sketch.unit * (0.3 if touch.turns else 0.16) + 2.0
-        shift = (away, -away - (k + 0.4) * drawing.font)
-        panel.annotate(touch.name, at, xytext=shift, textcoords="offset points", fontsize=drawing.font - 1, zorder=11)
+        low = -away - 0.4 * drawing.font
+        for other, its in taken:  # names at one place stand below one another
+            if np.hypot(*(at - other)) < 0.5 * sketch.unit:
+                low = min(low, its - drawing.font)
+        taken.append((at, low))
+        style: dict[str, Any] = {"fontsize": drawing.font - 1, "zorder": 11}
+        panel.annotate(touch.name, tuple(at.tolist()), xytext=(away, low), textcoords="offset points", **style)
     return figure
 
 

@@ -43,6 +43,8 @@ from fricmb.values import value_of
 
 #: Size of a pin as a share of the whole, and half the width of a link in pins.
 _PIN, _HALF = 0.06, 0.55
+#: Distance of springs and dampers that stand side by side, and of names above one another, in units.
+_BESIDE, _LINE = 0.7, 0.4
 #: A body of one point is a bar about its centre where its inertia is at least this share of such a bar's.
 _SLENDER = 0.25
 
@@ -73,7 +75,39 @@ class _Linkage:
                 self.sketch.touches.append(Touch(name=part.name, at=self._spot(part.a)))
         for part in scene.elements:
             self._element(part)
+        self._beside()
+        self._names()
         self.sketch.frame(2.2 * self.sketch.unit)
+
+    def _beside(self) -> None:
+        """Springs and dampers between the same two places stand side by side, and so high are their walls."""
+        sketch = self.sketch
+        found: dict[Any, list[Link]] = {}
+        for link in sketch.links:
+            if link.kind in ("spring", "damper"):
+                ends = [tuple(np.round(sketch.where(end, 0) / sketch.unit, 2).tolist()) for end in (link.a, link.b)]
+                found.setdefault(frozenset(ends), []).append(link)
+        for links in found.values():
+            for k, link in enumerate(links):
+                apart = sketch.where(link.a, 0) - sketch.where(links[0].a, 0)
+                way = _BESIDE if np.hypot(*apart) < 0.1 * sketch.unit else -_BESIDE
+                link.side = way * (k - 0.5 * (len(links) - 1))
+                for mark in sketch.marks:
+                    if mark.kind == "wall" and mark.at in (link.a, link.b) and len(links) > 1:
+                        mark.size = (0.5 * _BESIDE * (len(links) - 1) + 0.35) * sketch.unit
+
+    def _names(self) -> None:
+        """Names that would stand on one another stand above one another."""
+        sketch = self.sketch
+        taken: list[Floats] = []
+        for k, shape in enumerate(sketch.shapes):
+            at = sketch.turned(k, np.array([shape.label]), 0)[0] / sketch.unit
+            turn = sketch.places[k, 2, 0]
+            while shape.name and any(abs(at - other) @ [1.0, 4.0] < 1.4 for other in taken):
+                at = at + np.array([0.0, _LINE])
+                up = _LINE * sketch.unit * np.array([np.sin(turn), np.cos(turn)])
+                shape.label = (shape.label[0] + up[0], shape.label[1] + up[1])
+            taken.append(at)
 
     # ---- bodies
 
@@ -123,7 +157,7 @@ class _Linkage:
         unit, name = self.sketch.unit, str(part.name)
         if not isinstance(part, RigidBody):
             face = "body" if part in self.scene.bodies else "moved"
-            return Shape(name=name, face=face, outline=disc(0.8 * unit), label=(1.4 * unit, 0.9 * unit))
+            return Shape(name=name, face=face, outline=disc(0.8 * unit), label=(1.4 * unit, 1.3 * unit))
         points = list(dict.fromkeys(self.points[name]))
         away = [p for p in points if np.hypot(*p) > 1e-9]
         if not away:
