@@ -7,12 +7,15 @@ impact is computed here, and the loop goes on.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from fricmb.integrate.compile.direct import Direct
+from fricmb.integrate.constrained.impact_alone import hit_alone, room_alone
 from fricmb.integrate.constrained.impact_in_turn import solve_in_turn
-from fricmb.integrate.constrained.impact_law import Answer, Hit, solve_by_poisson, solve_impact
+from fricmb.integrate.constrained.impact_law import GAIN, Answer, Hit, solve_by_poisson, solve_impact
 from fricmb.integrate.constrained.impact_log import ImpactLog, Outcome
 from fricmb.integrate.constrained.impact_rest import Bounces, Hop, Leaving
 from fricmb.integrate.constrained.impact_resume import put_state, resume, tell_changes
@@ -20,15 +23,18 @@ from fricmb.integrate.constrained.impact_surfaces import Surfaces
 from fricmb.integrate.constrained.impulse_matrix import ImpulseMatrix
 from fricmb.integrate.mechanism import APART
 from fricmb.integrate.problem import NORMAL_REACTION, Codes, Floats, Ints, Problem
-from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.outcomes import DONE, FAIL_HIT, FAIL_LOST, FAIL_MODES, SLICE_OVER
 
-#: Energy that an impact may bring by round-off, beside the kinetic energy.
-GAIN = 1e-11
 #: Part of the fastest speed by which speeds behind an impact differ if the order of its contacts matters.
 DIFFER = 1e-6
 #: Impacts at one instant, for each contact, after which the run ends.
 PILE = 8
+
+#: Impacts between two looks at what else ends a run.
+MANY = 100
+
+_hit_alone = Direct(hit_alone)
+_put_state, _resume, _tell_changes = Direct(put_state), Direct(resume), Direct(tell_changes)
 
 
 class Impacts:
@@ -51,19 +57,34 @@ class Impacts:
         self._mech, self._workspace, self._record, self._part = mech, workspace, record, part
         self._inverse = ImpulseMatrix(self.surfaces.mechanism)
         self._bounces = Bounces(len(self.joints.port), float(workspace.y.t), float(workspace.control.rtol))
-        self._last, self._count = -np.inf, 0
+        mu = self._mu(np.arange(len(self.joints.port)))
+        self._alone = room_alone(problem, self.surfaces.mechanism, self._bounces, mu)
 
-    def around(self, drive: Callable[[], int]) -> Callable[[], int]:
+    def around(self, drive: partial[int]) -> Callable[[], int]:
         """The loop of the run with impacts in it."""
+        step, ws, a = Direct(drive.func), self._workspace, self._alone
+        known = self._mech, ws.k, ws.w, ws.y, ws.before, ws.control, ws.out, self._record, self._part, a
 
         def go_on() -> int:
-            code = drive()
-            if code != FAIL_HIT:
-                return code
-            code = self.go_through()
-            return SLICE_OVER if code == DONE else code
+            for _ in range(MANY):
+                code = int(step(*drive.args))
+                if code != FAIL_HIT:
+                    return code
+                if _hit_alone(*known):
+                    self.log.add_alone(float(ws.y.t), a.found)
+                    continue
+                code = self.go_through()
+                if code != DONE:
+                    return code
+            return SLICE_OVER
 
         return go_on
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences about impacts for the user."""
+        self.log.bear_impulses(self.problem.contact_names[c] for c in np.flatnonzero(self._alone.bears))
+        return self.log.notes
 
     def at_start(self) -> int:
         """Impacts at the first instant: of what touches and approaches."""
@@ -86,7 +107,7 @@ class Impacts:
         self._bounces.begin(float(y.t))
         members, falls = np.flatnonzero(touched | s.held), s.pressed()
         opened = self.joints.dropped.copy()
-        put_state(y, before)
+        _put_state(y, before)
         e = self.joints.restitution[members].copy()
         code, outcome = self._apply(members, e, touched, ())
         if code != DONE or outcome is None:
@@ -101,7 +122,7 @@ class Impacts:
             ends = _ending(hops)
             touched[members[ends]] = True
             e = self.joints.restitution[members].copy()
-            put_state(before, y)
+            _put_state(before, y)
             self.joints.dropped[:] = opened
             e[ends] = 0.0
             forced = tuple({*others, *members[ends].tolist()}) if others else ()
@@ -112,18 +133,17 @@ class Impacts:
         span, out = self._workspace.control.span, self._workspace.out
         push = float(np.abs(outcome.answer.impulse).max(initial=0.0)) / float(span[1] - span[0])
         out.top_force = max(float(out.top_force), push)
-        tell_changes(self._mech, y, before, self._record)
+        _tell_changes(self._mech, y, before, self._record)
         rested = (touched & s.held)[members].tolist()
         self.log.add(float(y.t), members, rested, np.maximum(-rate[members], 0.0) + 0.0, outcome, hops)
         return DONE
 
     def _piles_up(self, t: float, count: int) -> bool:
         """Whether there is no end of impacts at one instant."""
-        self._count = self._count + 1 if t - self._last <= 8.0 * EPS * abs(t) else 0
-        self._last = t
-        if self._count > PILE * (count + 1):
+        before = self._bounces.at_once(t)
+        if before > PILE * (count + 1):
             self.failure = (
-                f"impacts pile up at one instant ({self._count} at t = {t:.10g}): several contacts come to rest by"
+                f"impacts pile up at one instant ({before} at t = {t:.10g}): several contacts come to rest by"
                 " impacts in turn, and rest is dated for single contacts alone"
             )
         return self.failure is not None
@@ -232,7 +252,7 @@ class Impacts:
             if self.joints.port[j] >= 0 and not self.surfaces.open[j]:
                 fresh[self.joints.port[j]] = 1
         ws.out.opened = int((self.joints.dropped == APART).sum())
-        return int(resume(self._mech, ws.k, ws.w, ws.y, ws.control, ws.out, self._part, fresh))
+        return int(_resume(self._mech, ws.k, ws.w, ws.y, ws.control, ws.out, self._part, fresh))
 
     def _hold_again(self, members: Ints) -> int:
         """Hold what rests on its surface and would fall into it, since something else has let go."""

@@ -30,6 +30,8 @@ LEAVES, LEAVES_FORWARD, LEAVES_BACKWARD = 3, 4, -4
 PRESSED, SLIPPING = (STICKS, FORWARD, BACKWARD), (FORWARD, BACKWARD, LEAVES_FORWARD, LEAVES_BACKWARD)
 #: Round-off of velocities and impulses beside the largest.
 ROUND_OFF = 1e-11
+#: Energy that an impact may bring by round-off, beside the kinetic energy.
+GAIN = 1e-11
 #: So many combinations are all tried, and other solutions are counted; of more the first that fits is taken.
 ALL, MOST = 256, 20000
 

@@ -59,6 +59,13 @@ class ImpactLog:
                 common[1:4] = [0.0, hop.left, hop.bound]
                 self._rows.append([t + hop.left, n_c + j, EVENT_REST, 0.0, 0.0, *common])
 
+    def add_alone(self, t: float, found: Floats) -> None:
+        """An impact of one contact that bounces on (see ``impact_alone``)."""
+        normal, along, approach, lost, which = found.tolist()
+        j = int(which)
+        side = float(self._joints.side[j])
+        self._rows.append([t, self._problem.n_c + j, EVENT_IMPACT, normal, along, approach, lost, 0.0, 0.0, 0.0, side])
+
     def depend_on_order(self, t: float, names: Iterable[str]) -> None:
         """Note that these are hit at one instant, and that in turn they would leave with other speeds."""
         self._order.setdefault(t, tuple(dict.fromkeys(names)))

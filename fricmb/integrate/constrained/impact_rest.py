@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fricmb.integrate.problem import Floats
+from fricmb.integrate.problem import Floats, Floats2
 from fricmb.integrate.run.breakpoints import EPS
 
 #: Bounces end when what is left of them is less than this part of the time in which the acceleration would bring about
@@ -81,19 +81,33 @@ def hop_of(gap: float, rate: float, pressed: float) -> float:
 
 
 class Bounces:
-    """What is known of the last impact of each of n joints in a run from ``t_start`` with a tolerance ``rtol``."""
+    """What is known of the last impacts of each of n joints in a run from ``t_start`` with a tolerance ``rtol``.
+
+    Attributes
+    ----------
+    t, falls, count, times : (n,), (n,), (n,) int64, (n, 3)
+        Of each its last impact and what it fell with then, their number, times between the last ones.
+    clock : (4,)
+        Last impact of any and the time since the one before; last impact and number of those at one instant.
+    """
 
     def __init__(self, n: int, t_start: float, rtol: float) -> None:
         self._t_start, self._rtol = t_start, rtol
-        self._t: Floats = np.full(n, -np.inf)
-        self._falls: Floats = np.zeros(n)
-        self._count = np.zeros(n, np.int64)
-        self._times: Floats = np.full((n, 3), np.inf)
-        self._latest, self._since = t_start, 0.0
+        self.t: Floats = np.full(n, -np.inf)
+        self.falls: Floats = np.zeros(n)
+        self.count = np.zeros(n, np.int64)
+        self.times: Floats2 = np.full((n, 3), np.inf)
+        self.clock: Floats = np.array([t_start, 0.0, -np.inf, 0.0])
 
     def begin(self, t: float) -> None:
         """An impact of any of them at t."""
-        self._latest, self._since = t, t - self._latest
+        self.clock[:2] = t, t - self.clock[0]
+
+    def at_once(self, t: float) -> int:
+        """An impact of any of them at t: how many there were at this instant before it."""
+        self.clock[3] = self.clock[3] + 1 if t - self.clock[2] <= 8.0 * EPS * abs(t) else 0
+        self.clock[2] = t
+        return int(self.clock[3])
 
     def among_others(self, leaving: Leaving, gap: float, ratio: float, pace: float) -> Hop:
         """The hop of a contact that others have thrown up, or that is on its way back, while these come to rest.
@@ -106,17 +120,17 @@ class Bounces:
         T = hop_of(gap, leaving.speed, leaving.rises) / (1.0 - min(max(ratio, leaving.e), 0.99))
         # what is about to hit as fast as anything moves has a short way as well
         slow = leaving.speed >= -SHORT * leaving.size
-        ends = slow and SHORT * leaving.size / max(leaving.rises, pace) >= T and NEXT * self._since >= T
+        ends = slow and SHORT * leaving.size / max(leaving.rises, pace) >= T and NEXT * self.clock[1] >= T
         bound = T + self._rtol * (leaving.t - self._t_start)
         return Hop(ends=bool(ends), left=T, bound=bound)
 
     def after(self, leaving: Leaving) -> Hop:
         """The bounce that begins."""
-        j, since = leaving.joint, leaving.t - self._t[leaving.joint]
-        rate = (leaving.falls - self._falls[j]) / since if np.isfinite(since) and since > 0.0 else np.inf
-        self._t[j], self._falls[j] = leaving.t, leaving.falls
-        self._count[j] += 1
-        self._times[j] = np.append(self._times[j][1:], since)
+        j, since = leaving.joint, leaving.t - self.t[leaving.joint]
+        rate = (leaving.falls - self.falls[j]) / since if np.isfinite(since) and since > 0.0 else np.inf
+        self.t[j], self.falls[j] = leaving.t, leaving.falls
+        self.count[j] += 1
+        self.times[j] = np.append(self.times[j][1:], since)
         if not (leaving.rises > 0.0 and leaving.falls > 0.0):
             return self._in_series(leaving)
         ratio = leaving.e * np.sqrt(leaving.falls / leaving.rises)
@@ -139,7 +153,7 @@ class Bounces:
 
         So do those of a disc that slips on a floor as it leaves a wall, and rolls back to it.
         """
-        times = self._times[leaving.joint]
+        times = self.times[leaving.joint]
         if not (np.isfinite(times).all() and times.min() > 0.0 and leaving.speed <= SHORT * leaving.size):
             return Hop(ends=False)
         before, ratio = times[1:] / times[:-1]
@@ -151,5 +165,5 @@ class Bounces:
 
     def _unknown(self, leaving: Leaving) -> float:
         """What impacts so far may be off by in time."""
-        located = LOCATED * EPS * abs(leaving.t) * float(self._count[leaving.joint])
+        located = LOCATED * EPS * abs(leaving.t) * float(self.count[leaving.joint])
         return located + self._rtol * (leaving.t - self._t_start)

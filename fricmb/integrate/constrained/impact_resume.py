@@ -55,8 +55,8 @@ def least_held(mech: Mech, y: State) -> int:
     return worst
 
 
-@run_entry
-def resume(
+@kernel
+def go_on(
     mech: Mech, k: Moving, w: Instant, y: State, c: Control, out: Watch, part: Codes, fresh: Codes
 ) -> int:
     """Modes, reactions and accelerations behind an impact; what is open is marked among the joints.
@@ -93,6 +93,14 @@ def resume(
     c.made = 0.0
     c.growth = 1e300
     return FAIL_MARGIN if margins(mech, k, w, y, out, True) <= 0.0 else DONE
+
+
+@run_entry
+def resume(
+    mech: Mech, k: Moving, w: Instant, y: State, c: Control, out: Watch, part: Codes, fresh: Codes
+) -> int:
+    """As ``go_on``."""
+    return int(go_on(mech, k, w, y, c, out, part, fresh))
 
 
 @entry

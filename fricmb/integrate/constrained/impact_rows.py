@@ -36,8 +36,8 @@ def rates(mech: Mech, k: Moving, lam: Floats, normal: Floats, slip: Floats) -> N
             slip[a] = value_of_form(k, port.slip, form) - port.w[a]
 
 
-@entry
-def impact_rows(
+@kernel
+def rows_at(
     mech: Mech, k: Moving, y: State, v: Floats, G: Floats2, G0: Floats, W: Floats2, W0: Floats, gap: Floats,
     noise: Floats, normal: Floats, slip: Floats,
 ) -> None:  # fmt: skip
@@ -66,8 +66,8 @@ def impact_rows(
         noise[j] = gap_noise(mech, k, j, n_x) if some and mech.joint.one_sided[j] != 0 else 0.0
 
 
-@entry
-def gap_accelerations(mech: Mech, k: Moving, y: State, found: Floats) -> None:
+@kernel
+def accelerations_of_gaps(mech: Mech, k: Moving, y: State, found: Floats) -> None:
     """Second derivatives (n_j,) of the distances of one-sided joints, open or not, with the accelerations of y."""
     joint = mech.joint
     move(mech, k, y.t, y.q, y.v)
@@ -81,3 +81,18 @@ def gap_accelerations(mech: Mech, k: Moving, y: State, found: Floats) -> None:
         for a in range(n_x):
             found[j] += k.out[1 + a] * bend(k, joint.table, joint.table.x_start[j] + a)
             found[j] += k.out[B + a] * k.x[n_x + a]
+
+
+@entry
+def impact_rows(
+    mech: Mech, k: Moving, y: State, v: Floats, G: Floats2, G0: Floats, W: Floats2, W0: Floats, gap: Floats,
+    noise: Floats, normal: Floats, slip: Floats,
+) -> None:  # fmt: skip
+    """As ``rows_at``."""
+    rows_at(mech, k, y, v, G, G0, W, W0, gap, noise, normal, slip)
+
+
+@entry
+def gap_accelerations(mech: Mech, k: Moving, y: State, found: Floats) -> None:
+    """As ``accelerations_of_gaps``."""
+    accelerations_of_gaps(mech, k, y, found)

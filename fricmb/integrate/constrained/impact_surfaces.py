@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from fricmb.integrate.compile.direct import Direct
 from fricmb.integrate.constrained.impact_rows import gap_accelerations, impact_rows
 from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.mechanism import APART, RIGID
@@ -18,6 +19,8 @@ SAME, SHORTEST = 64.0 * EPS, 1e-13
 SEEN = 33
 #: Speed that is none, and acceleration, beside what velocities so far and accelerations now could bring.
 STILL, SLIGHT = 1e-12, 1e-9
+
+_rows, _accelerations = Direct(impact_rows), Direct(gap_accelerations)
 
 
 class Surfaces:
@@ -48,7 +51,7 @@ class Surfaces:
         n, m, m_p, n_j = self.problem.n, self.mechanism.n_rows, self.problem.m, len(self.joints.port)
         self.G, self.G0, self.W, self.W0 = np.zeros((m, n)), np.zeros(m), np.zeros((m_p, n)), np.zeros(m_p)
         self.gap, self.noise = np.zeros(n_j), np.zeros(n_j)
-        impact_rows(
+        _rows(
             self._mech, self._workspace.k, self._workspace.y, np.zeros(n), self.G, self.G0, self.W, self.W0, self.gap,
             self.noise, np.zeros(m), np.zeros(m_p),
         )  # fmt: skip
@@ -104,7 +107,7 @@ class Surfaces:
     def pressed(self) -> Floats:
         """Accelerations (n_j,) towards the surfaces, with those of the present state."""
         found = np.zeros(len(self.first))
-        gap_accelerations(self._mech, self._workspace.k, self._workspace.y, found)
+        _accelerations(self._mech, self._workspace.k, self._workspace.y, found)
         return -found
 
     def pace(self) -> Floats:

@@ -84,17 +84,18 @@ def run_mechanism(
         past = _history(problem, start, t_end, stages) if multistep else (no_differences(), no_formula(y, st))
         limits = steps_of_run(problem, start.t, t_end, tolerance)
         seen = limits.edge, limits.longest
-        go_on: Callable[[], int] = partial(
+        stepping: partial[int] = partial(
             drive, mech, k, w, y, end, before, st, control, out, record, part, *past, *seen
         )  # fmt: skip
         chunks, impacts = Chunks(record, "values", "span", "force", "mode", "opened", "after"), None
+        go_on: Callable[[], int] = stepping
         code = begin(mech, k, w, y, control, out, part, start.mode is not None, small, reach)
         if code == DONE:
             chunks.note_changes(problem.contacts, start, y.mode, y.n)
             _settle(workspace, problem, start, t_end)
             if mechanism_of(problem).has_impacts:
                 impacts = Impacts(problem, mech, workspace, record, part)
-                code, go_on = impacts.at_start(), impacts.around(go_on)
+                code, go_on = impacts.at_start(), impacts.around(stepping)
         if code == DONE:
             code = chunks.fill(go_on, y, memory, progress)
         chunks.take()
@@ -109,7 +110,7 @@ def run_mechanism(
     notes = (*notes, *impulse_notes(problem, span, values))
     transitions = chunks.transitions()
     if impacts is not None:
-        notes = (*notes, *impacts.log.notes)
+        notes = (*notes, *impacts.notes)
         transitions = impacts.log.transitions(transitions, span[:, 0], opened, last.t)
     return StepTrajectory(
         whole, span, values, force, mode, opened, after, transitions, counters(counts, notes), last, failure,
