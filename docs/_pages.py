@@ -263,13 +263,14 @@ def oracle(result) -> str:
 
 
 def impact_error(rows) -> str:
-    """Errors and times of ``tools/impact_error.py`` at one tolerance, a line for each scene."""
-    at = {(row["scene"], row["way"]): row for row in rows if row["rtol"] == 1e-8}
+    """Errors and times of ``tools/impact_error.py`` at one tolerance and of Siconos' steps, a line for each scene."""
+    at = {(row["scene"], row["way"]): row for row in rows if row.get("rtol") == 1e-8 or row.get("h") == 1e-4}
+    ways = ("fricmb", "by hand", "Siconos")
     lines = [
-        (scene, *(f"{at[scene, way][what]:.2g}" for what in ("error", "ms") for way in ("fricmb", "by hand")))
+        (scene, *(digits(at.get((scene, way), {}).get(what)) for what in ("error", "ms") for way in ways))
         for scene in dict.fromkeys(row["scene"] for row in rows)
     ]
-    return "\n".join(table(("scene", "error, fricmb", "by hand", "ms, fricmb", "by hand"), lines))
+    return "\n".join(table(("scene", *(f"{what}, {way}" for what in ("error", "ms") for way in ways)), lines))
 
 
 def digits(number) -> str:

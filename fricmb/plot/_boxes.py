@@ -20,6 +20,7 @@ from fricmb.plot._sketch import (
     box,
     disc,
     is_idle,
+    is_limit,
     link_kind,
 )
 from fricmb.scene import Contact, ModalBody
@@ -57,7 +58,7 @@ class _Boxes:
         for _ in range(2):  # first to count the links on each side of each body
             self._wanted, self._slots = self._slots, {}
             self.sketch.links, self.sketch.marks = [], []
-            for part in scene.elements:
+            for part in (*scene.elements, *filter(is_limit, scene.joints)):
                 self._link(part)
         if not self.layout.above and any(b == "ground" for _, _, b in self.layout.contacts):
             self.sketch.floor = ROW - HEIGHT / 2 - 0.2

@@ -19,10 +19,12 @@ from fricmb.plot._sketch import (
     Touch,
     box,
     disc,
+    is_limit,
     link_kind,
     rounded,
 )
 from fricmb.scene import (
+    Body,
     Contact,
     DrivenAngle,
     DrivenSlide,
@@ -73,7 +75,7 @@ class _Linkage:
         for part in scene.parts:
             if isinstance(part, Contact):
                 self.sketch.touches.append(Touch(name=part.name, at=self._spot(part.a)))
-        for part in scene.elements:
+        for part in (*scene.elements, *filter(is_limit, self.joints)):
             self._element(part)
         self._beside()
         self._names()
@@ -156,7 +158,9 @@ class _Linkage:
     def _shape(self, part: Any) -> Shape:
         unit, name = self.sketch.unit, str(part.name)
         if not isinstance(part, RigidBody):
-            face = "body" if part in self.scene.bodies else "moved"
+            face, radius = "body" if part in self.scene.bodies else "moved", self._ball(name)
+            if radius > 0.0:
+                return Shape(name=name, face=face, outline=disc(radius), label=(0.0, -radius - 0.9 * unit))
             return Shape(name=name, face=face, outline=disc(0.8 * unit), label=(1.4 * unit, 1.3 * unit))
         points = list(dict.fromkeys(self.points[name]))
         away = [p for p in points if np.hypot(*p) > 1e-9]
@@ -169,6 +173,19 @@ class _Linkage:
         outline = rounded(points, _HALF * unit)
         middle = np.mean(points, axis=0)
         return Shape(name=name, face="body", outline=outline, label=(float(middle[0]), float(middle[1]) + 1.1 * unit))
+
+    def _are_balls(self, joint: RollerOnCircle) -> bool:
+        """Whether a joint keeps two points as far apart as balls that touch: neither of them turns."""
+        return joint.push_only and all(isinstance(end, Body) for end in (joint.a, joint.b))
+
+    def _ball(self, name: str) -> float:
+        """Radius of a body that touches others as a ball; 0: it is none."""
+        for joint in self.joints:
+            if not isinstance(joint, RollerOnCircle) or not self._are_balls(joint):
+                continue
+            if name in (owner(joint.a), owner(joint.b)):
+                return float(value_of(joint.radius)) / 2
+        return 0.0
 
     def _plain(self, body: RigidBody) -> Shape:
         """A body that nothing hangs on but at its centre: a block in a guide, else a wheel."""
@@ -245,6 +262,8 @@ class _Linkage:
             if getattr(joint, "friction", None) is not None:
                 at = self._foot(joint, a, b) if isinstance(joint, Wheel) else a
                 sketch.touches.append(Touch(name=joint.name, at=at))
+        elif isinstance(joint, RollerOnCircle) and self._are_balls(joint):
+            pass  # they are drawn as large as they are
         elif isinstance(joint, RollerOnCircle):
             sketch.marks.append(Mark(kind="circle", at=b, size=float(value_of(joint.radius))))
             if joint.friction is not None:

@@ -11,7 +11,7 @@ from fricmb.plot._boxes import boxes
 from fricmb.plot._contact import OPEN, static_limit
 from fricmb.plot._fine import Floats, span_of, window_of
 from fricmb.plot._linkage import linkage
-from fricmb.plot._sketch import Motion, Sketch, motions_at_start, motions_of
+from fricmb.plot._sketch import Motion, Sketch, is_limit, motions_at_start, motions_of
 from fricmb.scene import Contact, RigidBody, SpaceBody
 
 if TYPE_CHECKING:
@@ -65,7 +65,8 @@ def check_drawn(scene: Any) -> None:
 
 def _sketch(scene: Any, position: Motion, t: Floats, magnify: float | None) -> Sketch:
     check_drawn(scene)
-    if any(isinstance(body, RigidBody) for body in scene.bodies) or scene.joints:
+    turns = any(isinstance(body, RigidBody) for body in scene.bodies)
+    if turns or not all(is_limit(joint) for joint in scene.joints):
         return linkage(scene, position, t)
     return boxes(scene, position, t, magnify)
 

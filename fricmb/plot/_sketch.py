@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fricmb.scene import Backlash, Stop
+from fricmb.scene._rigid_stops import RigidBacklash, RigidStop
 from fricmb.values import is_expression, value_of
 
 if TYPE_CHECKING:
@@ -72,8 +74,14 @@ class Link:
 
 def link_kind(part: Any) -> str:
     """As what an element is drawn: "damper", "play" of stops and flanks, "spring"."""
-    name = type(part).__name__
-    return "damper" if "Damper" in name else "play" if name in ("Stop", "Backlash") else "spring"
+    if isinstance(part, Stop | Backlash) or is_limit(part):
+        return "play"
+    return "damper" if "Damper" in type(part).__name__ else "spring"
+
+
+def is_limit(part: Any) -> bool:
+    """Whether a part is a stop or play that does not give."""
+    return isinstance(part, RigidStop | RigidBacklash)
 
 
 def is_idle(part: Any) -> bool:

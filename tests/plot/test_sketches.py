@@ -169,3 +169,27 @@ def test_every_model_is_drawn(theme, tmp_path):
 def test_crowds_are_not_drawn():
     with pytest.raises(fm.FricmbError, match="a scene of 1501 bodies is not drawn; at most 60 are"):
         fm.models.block_stack(1500, mu_s=[0.5] * 1500).draw()
+
+
+def test_balls_that_strike_each_other_are_drawn_as_large_as_they_are():
+    sketch = sketch_of_scene(fm.models.newtons_cradle(n=3, radius=0.02))
+    sizes = [np.hypot(*shape.outline.T).max() for shape in sketch.shapes if shape.name.startswith("ball")]
+    assert np.allclose(sizes, 0.02)
+    assert "circle" not in {mark.kind for mark in sketch.marks}
+
+
+def test_stops_and_play_that_do_not_give_are_drawn_as_those_that_do():
+    for given in ({"restitution": 0.5}, {"stiffness": 1e3}):
+        box, loose = (fm.Body(name, mass=1.0) for name in ("box", "loose"))
+        parts = [
+            box, loose,
+            fm.Spring("spring", box, axis="x", stiffness=1.0),
+            fm.Stop("stop", box, axis="x", upper=0.5, **given),
+            fm.Backlash("play", loose, box, axis="x", gap=0.2, **given),
+        ]
+        sketch = sketch_of_scene(fm.Scene("blocks", parts))
+        assert {(link.name, link.kind) for link in sketch.links} == {
+            ("spring", "spring"), ("stop", "play"), ("play", "play"),
+        }  # fmt: skip
+    gears = sketch_of_scene(fm.models.gear_rattle())
+    assert "play" in {link.kind for link in gears.links}

@@ -167,7 +167,7 @@ def test_annotations_of_entries_are_the_types_of_their_calls():
     for method in ("bdf", "radau"):
         fm.simulate(fm.models.slider_crank(), t_end=0.01, t_eval=[0.005], method=method)
         fm.simulate(fm.models.slider_crank(), t_end=0.01, method=method)  # one instant alone is completed at its end
-    fm.simulate(fm.models.bouncing_ball(), t_end=1.0)
+    fm.simulate(fm.models.bouncing_ball(), t_end=20.0)  # to their end
     block = fm.Body("b", mass=1.0)
     spring = fm.Spring("s", block, axis="x", stiffness=1.0, cubic=1.0)
     parts = [block, spring, fm.Force("f", block, axis="x", value=fm.t**2)]

@@ -141,14 +141,15 @@ def answers(mech: Mech, y: State, a: Alone, j: int, rows: int) -> int:
     for i in range(joint.port.shape[0]):
         for r in range(joint.row[i], joint.row[i + 1] if joint.hands_over[i] != RIGID else joint.row[i]):
             if joint.dropped[r] == 0:
-                K[at, :n] = a.G[r]
-                K[:n, at] = a.G[r]
+                for e in range(n):
+                    K[at, e] = K[e, at] = a.G[r, e]
                 at += 1
     if not lu_factor(K, sizes, pivots):
         return -1
     for p in range(rows):
-        a.push[p, :] = 0.0
-        a.push[p, :n] = a.G[first_row(mech, j)] if p == 0 else a.W[mech.port.row[joint.port[j]]]
+        a.push[p] = 0.0
+        for e in range(n):
+            a.push[p, e] = a.G[first_row(mech, j), e] if p == 0 else a.W[mech.port.row[joint.port[j]], e]
         lu_solve(K, a.push[p, : n + m], sizes, pivots)
     return m
 
