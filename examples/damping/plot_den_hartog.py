@@ -27,7 +27,7 @@ amplitude = np.abs(last["mass.x"]).max()
 figure, ax = plt.subplots(figsize=(5, 4.2), layout="constrained")
 sol.plot.phase("mass.x", ax=ax)
 ax.plot(last["mass.x"], last.velocity("mass.x"), color="tab:orange", label="settled")
-ax.legend()
+ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, fontsize="small", borderaxespad=0.2)
 plt.show()
 
 V = 1 / (1 - beta**2)

@@ -39,11 +39,12 @@ for n, (sol, each) in zip(sizes, runs, strict=True):
 # The slope in this picture is the exponent of the cost of a step; a constant part shows at the left end.
 
 slope = np.polyfit(np.log(sizes[1:]), np.log(seconds[1:]), 1)[0]
-figure, (left, right) = plt.subplots(1, 2, figsize=(9, 4), layout="constrained")
-left.loglog(sizes, 1e3 * seconds, "o-", label=f"measured, exponent {slope:.2f}")
-left.loglog(sizes, 1e3 * seconds[-1] * np.array(sizes) / sizes[-1], "--", color="grey", label="in proportion")
-left.set(xlabel="blocks", ylabel="ms a step")
-left.legend()
+figure, ax = plt.subplots(figsize=(6.4, 3.6), layout="constrained")
+ax.loglog(sizes, 1e3 * seconds, "o-", label=f"measured, exponent {slope:.2f}")
+ax.loglog(sizes, 1e3 * seconds[-1] * np.array(sizes) / sizes[-1], "--", color="grey", label="in proportion")
+ax.set(xlabel="blocks", ylabel="milliseconds a step")
+ax.legend()
+plt.show()
 
 # %%
 # The avalanche in the chain of a thousand: where and when blocks break away and are caught.
@@ -51,10 +52,11 @@ left.legend()
 events = runs[2][0].events
 where = np.array([int(event.contact.removeprefix("sole")) for event in events])
 kind = np.array([event.kind == "slip" for event in events])
-right.plot(where[kind], events.t[kind], ".", ms=2, color="tab:blue", label="slip")
-right.plot(where[~kind], events.t[~kind], ".", ms=2, color="tab:orange", label="stick")
-right.set(xlabel="block", ylabel="t")
-right.legend(markerscale=5, loc="center right")
+figure, ax = plt.subplots(figsize=(6.4, 3.6), layout="constrained")
+ax.plot(where[kind], events.t[kind], ".", ms=2, color="tab:blue", label="slip")
+ax.plot(where[~kind], events.t[~kind], ".", ms=2, color="tab:orange", label="stick")
+ax.set(xlabel="block", ylabel="time")
+ax.legend(markerscale=5, loc="center right")
 plt.show()
 
 # %%

@@ -31,7 +31,7 @@ reach = np.array([sol.events.of(contact=f"floor{i}", kind="slip").t[0] * rate fo
 figure, ax = plt.subplots(figsize=(6.4, 3.2), layout="constrained")
 for i in range(1, n + 1):
     ax.plot(rate * sol.t / f, sol[f"box{i}.x"], color=plt.cm.viridis(i / (n + 1)), label=f"box {i}")
-ax.set(xlabel="push / friction of one box", ylabel="way of the boxes")
+ax.set(xlabel="push / friction of one box", ylabel="displacement of the boxes")
 ax.legend(fontsize="small", ncols=2)
 plt.show()
 

@@ -31,7 +31,7 @@ figure, ax = plt.subplots(figsize=(6.4, 3.2), layout="constrained")
 ax.plot(at.t, 100 * at["glass.x"], label="on the cloth")
 fine = second.at(np.linspace(off, 0.4, 100))
 ax.plot(fine.t, 100 * fine["glass.x"], label="on the table")
-ax.set(xlabel="time (s)", ylabel="way of the glass (cm)")
+ax.set(xlabel="time (s)", ylabel="displacement of the glass (cm)")
 ax.legend()
 plt.show()
 

@@ -31,7 +31,8 @@ figure, axes = plt.subplots(1, 2, figsize=(7.4, 3.2), sharey=True, layout="const
 for ax, share in zip(axes, (0.95, 1.05), strict=True):
     start = {"crust.stiffness": share * closed, "rock.position.x": 0.6 * N / (share * closed) + 1e-7}
     sol = fm.simulate(scene.with_parameters(start), t_end=1.0, rtol=1e-6)
-    ax.plot(sol.t, -sol.relative_velocity("fault")[0] / V, linewidth=0.8)
+    fine = sol.at(np.linspace(0.0, 1.0, 2001))
+    ax.plot(fine.t, -fine.relative_velocity("fault")[0] / V, linewidth=0.8)
     ax.set(title=f"stiffness {share} $k_c$", xlabel="time (s)")
 axes[0].set_ylabel("slip speed / V")
 plt.show()

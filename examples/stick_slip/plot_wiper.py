@@ -29,7 +29,7 @@ sol = fm.simulate(scene, t_end=0.44, rtol=1e-9, t_eval=np.linspace(0.0, 0.44, 17
 figure, ax = plt.subplots(figsize=(6.4, 3.2), layout="constrained")
 ax.plot(sol.t, 1e3 * sol["lip.x"], label="lip leans (mm)")
 ax.plot(sol.t, 10 * sol["glass.x"], "--", color="0.6", label="glass (dm)")
-ax.set_xlabel("time (s)")
+ax.set(xlabel="time (s)", ylabel="displacement (mm, dm)")
 ax.legend()
 plt.show()
 

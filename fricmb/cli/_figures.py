@@ -80,6 +80,6 @@ def _angle(sol: fm.Solution, ax: Axes) -> None:
     """Direction of the friction force against the direction of braking."""
     force = sol.force("lining")
     ax.plot(sol.t, np.degrees(np.arctan2(force[1], force[0])), linewidth=0.6)
-    ax.set_xlabel("time [1]")
+    ax.set_xlabel("time")
     ax.set_ylabel("angle of the friction force [degrees]")
     ax.grid(True, linewidth=0.4, alpha=0.5)

@@ -39,10 +39,28 @@ def velocities(ax: Axes, sol: fm.Solution, letter: str) -> None:
     finish(ax, x="time [1]", y=f"velocity along {letter} [1]", legend=True)
 
 
+def page_with_close(row: int, *, height: float) -> tuple[Figure, list[Axes], Axes]:
+    """A figure of two rows, of which one has a narrow panel beside it for an enlarged part."""
+    figure = new_picture(7.2, 2.0 * height + 0.4)
+    offer(figure)
+    grid = figure.add_gridspec(2, 4)
+    panels = [figure.add_subplot(grid[k, :3] if k == row else grid[k, :]) for k in range(2)]
+    return figure, panels, figure.add_subplot(grid[row, 3], sharey=panels[row])
+
+
 def across(ax: Axes, sol: fm.Solution) -> None:
     """The pad's position across."""
     ax.plot(sol.t, sol["pad.y"], color=BLUE, linewidth=0.6)
     finish(ax, x="time [1]", y="y1 [1]")
+
+
+def enlarge_across(ax: Axes, beside: Axes, sol: fm.Solution) -> None:
+    """A part of the pad's position across, enlarged; shaded where it is from."""
+    across(beside, sol)
+    beside.set_ylabel("")
+    beside.tick_params(labelleft=False)
+    beside.set_title("enlarged", loc="right", fontsize="small")
+    ax.axvspan(float(sol.t[0]), float(sol.t[-1]), color=DARK, alpha=0.25, linewidth=0.0)
 
 
 def spectrum(ax: Axes, found: Spikes, *, named: dict[str, float], low: float = 0.0, high: float = 22.0) -> None:
@@ -72,6 +90,7 @@ def write_places(ax: Axes, found: Spikes, low: float, high: float) -> None:
                 ha="center",
                 va="bottom",
                 rotation=90,
+                bbox={"facecolor": ax.get_facecolor(), "edgecolor": "none", "pad": 0.4},
             )
     bottom, top = ax.get_ylim()
     ax.set_ylim(bottom, top * 30)

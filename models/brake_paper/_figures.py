@@ -15,9 +15,11 @@ from fricmb.models.brake_paper._measures import Finding, spikes
 from fricmb.plot import BLUE, ORANGE, finish
 
 from . import _findings as find
-from ._draw import across, page, spectrum, velocities, window, write_places
+from ._draw import across, enlarge_across, page, page_with_close, spectrum, velocities, window, write_places
 
 OMEGA1, OMEGA2 = "Omega1", "Omega2"
+#: A few swings across, where the whole run is a band.
+ENLARGED = (300.0, 310.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,10 +88,11 @@ def _close_y1(sol: fm.Solution) -> Figure:
 
 
 def _x_and_y1(sol: fm.Solution) -> Figure:
-    figure, (top, bottom) = page(2)
+    figure, (top, bottom), beside = page_with_close(1, height=2.6)
     whole = window(sol, 0.0, sol.t_end)
     velocities(top, whole, "x")
     across(bottom, whole)
+    enlarge_across(bottom, beside, window(sol, *ENLARGED))
     return figure
 
 
@@ -106,8 +109,9 @@ def _spectrum(case: str, low: float, high: float) -> Callable[[fm.Solution], Fig
 
 def _y1_and_spectrum(case: str) -> Callable[[fm.Solution], Figure]:
     def both(sol: fm.Solution) -> Figure:
-        figure, (top, bottom) = page(2, height=3.0)
+        figure, (top, bottom), beside = page_with_close(0, height=3.0)
         across(top, window(sol, 0.0, sol.t_end))
+        enlarge_across(top, beside, window(sol, *ENLARGED))
         found = spikes(sol)
         spectrum(bottom, found, named=_frequencies(case))
         if case == "3b":
@@ -126,7 +130,7 @@ def _angle(sol: fm.Solution) -> Figure:
     finish(ax, x="time [1]", y="angle [degrees]", legend=True)
     other = ax.twinx()
     other.plot(seen.t, slip, "--", color=ORANGE, linewidth=0.9)
-    other.set_ylabel("slip along x (dashed) [1]")
+    other.set_ylabel("slip along x (dashed)")
     return figure
 
 
