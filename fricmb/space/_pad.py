@@ -9,6 +9,7 @@ import numpy as np
 
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
+from fricmb.scene._bodies import Body
 from fricmb.scene._element import Element
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._part import GROUND, LETTERS, End
@@ -32,8 +33,11 @@ class Pad(SpaceJoint):
     name : str
     a : Rotor, RigidBody, or a point of one
         Whose face it is.
+    b : Body with axes "xyz", optional
+        Holder of the pad, which moves and does not turn; it bears what the pad presses and rubs with, so that its
+        springs have to carry the preload.  Default: the holder stands still.
     at : (float, float, float)
-        Where the pad touches as the bodies are declared; its holder stands still.
+        Where the pad touches as the body is declared; of a holder that moves, with its coordinates at 0.
     normal : (float, float, float)
         Of the face there, out of the body; of a rotor along its axis.
     preload : float
@@ -87,8 +91,8 @@ class Pad(SpaceJoint):
     turning: str | None = None
 
     def _check_own(self) -> None:
-        if self.b is not GROUND:
-            self._refuse("b", self.b.end_name, "left out: the holder stands still")
+        if self.b is not GROUND and not isinstance(self.b, Body):
+            self._refuse("b", self.b.end_name, "left out, or a holder that does not turn: a fm.Body with axes='xyz'")
         if self.friction is None:
             self._refuse("friction", None, "a friction law of two directions, such as fm.laws.Coulomb(mu_s=0.4)")
         self._set("at", check_triple(self, "at", self.at))
@@ -122,7 +126,7 @@ class Pad(SpaceJoint):
         normal = self.carried("a", self.direction("normal"))
         offset = float((place - _start_of(self.a)) @ self.direction("normal"))
         apart = [
-            self.a.motion(letter) + n * offset - LinearForm((), float(p))
+            self.a.motion(letter) + n * offset - LinearForm((), float(p)) - self.b.motion(letter)
             for letter, n, p in zip("xyz", normal, place, strict=True)
         ]
         turning = turning_forms(self.a.owner)

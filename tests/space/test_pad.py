@@ -242,7 +242,7 @@ def test_what_no_pad_can_press_on_is_refused():
     refused = [
         (lambda: SPACE.Pad("p", ball, normal=(0, 0, 1), **given), "a body that has directions"),
         (lambda: SPACE.Pad("p", disc, normal=(1, 0, 0), **given), "normal must be along the axis"),
-        (lambda: SPACE.Pad("p", disc, body, normal=(0, 0, 1), **given), "the holder stands still"),
+        (lambda: SPACE.Pad("p", disc, body, normal=(0, 0, 1), **given), "a holder that does not turn"),
         (lambda: SPACE.Pad("p", disc, normal=(0, 0, 0), **given), "normal must be"),
         (lambda: SPACE.Pad("p", disc, normal=(0, 0, 1), **given | {"friction": None}), "friction must be"),
         (lambda: SPACE.Pad("p", disc, normal=(0, 0, 1), **given | {"preload": -1.0}), "preload must be"),
