@@ -19,7 +19,9 @@ for ax, name in zip(axes.flat, names, strict=False):
     law = getattr(fm.laws, name).example()
     fm.plot.law(law, ax=ax)
     ax.set_visible(True)
-    ax.get_legend() and ax.get_legend().remove()
+    if ax.get_legend():
+        ax.get_legend().remove()
+        ax.autoscale(axis="x")  # no room for names
     ax.set(xlabel="displacement" if law.states else "slip speed", ylabel="")
     ax.xaxis.label.set_size("x-small")
     ax.set_title(name, fontsize="small")

@@ -19,6 +19,8 @@ from fricmb.plot._units import Units, bare
 Floats = NDArray[np.float64]
 #: A curve whose values differ by less than this share is a straight line.
 _FLAT = 2e-3
+#: Part of the width of loops that their names take beside them.
+_ROOM = 0.5
 #: Of the states in a loop: more than a picture shows.
 _RTOL = 1e-4
 
@@ -145,7 +147,9 @@ def draw_loops(law: FrictionLaw, ax: Axes, length: float, speed: float, normal_f
         label = f"amplitude {_short(amplitude)}" if law.states else f"speed {_short(top)}"
         ax.plot(x, -loop.force / normal_force, label=label, **line(i))
     what = f"displacement / {_short(length)}" if law.states else "displacement / amplitude"
-    _finish(ax, x=what, y="friction / normal force", legend=True)
+    left, right = ax.get_xlim()
+    ax.set_xlim(left, right + _ROOM * (right - left))  # loops leave no room for names but beside them
+    _finish(ax, x=what, y="friction / normal force", legend=True, at="center right")
 
 
 def draw_break_away(law: FrictionLaw, ax: Axes, normal_force: float) -> None:
@@ -182,7 +186,7 @@ def _name_units(ax: Axes, units: Units | None) -> None:
         ax.set_xlabel(bare(f"{label} [{unit}]"))
 
 
-def _finish(ax: Axes, x: str, y: str, *, legend: bool = False, logarithmic: bool = False) -> None:
+def _finish(ax: Axes, x: str, y: str, *, legend: bool = False, logarithmic: bool = False, at: str = "best") -> None:
     if not logarithmic:
         ax.ticklabel_format(axis="x", style="sci", scilimits=(-2, 3))
         ax.locator_params(axis="x", nbins=6)
@@ -192,7 +196,7 @@ def _finish(ax: Axes, x: str, y: str, *, legend: bool = False, logarithmic: bool
     if high - low < _FLAT * abs(middle):  # what changes by round-off is a constant
         ax.set_ylim(middle - 0.1 * abs(middle), middle + 0.1 * abs(middle))
     if legend:
-        ax.legend(loc="best", fontsize="x-small", frameon=True, framealpha=0.7, edgecolor="none")
+        ax.legend(loc=at, fontsize="x-small", frameon=True, framealpha=0.7, edgecolor="none")
 
 
 def _swing(speed: float, omega: float) -> Callable[[Any], Any]:
