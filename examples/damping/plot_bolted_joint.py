@@ -2,9 +2,10 @@ r"""
 How does the damping of a bolted joint grow with its load?
 ==========================================================
 
-With the cube: harder loads make more of it slip, and what slips slips farther. An Iwan joint of n equal springs
-:math:`k_0`, whose sliders' limits are spread evenly up to :math:`l`, loses :math:`4 l_i (a - l_i/k_0)` in each that
-slips; for many that adds up to :math:`\frac23 n k_0^2 a^3/l` (W. D. Iwan, J. Appl. Mech. 33 (1966) 893-900).
+With the cube of the amplitude: a harder load makes more of the joint slip, and slip farther. An Iwan joint of n equal
+springs :math:`k_0`, whose sliders' limits are spread evenly up to :math:`l`, loses :math:`4 l_i (a - l_i/k_0)` in
+each that slips; for many that adds up to :math:`\frac23 n k_0^2 a^3/l` (W. D. Iwan, J. Appl. Mech. 33 (1966)
+893-900).
 
 On the left are the loops of friction over displacement for five amplitudes; the area of a loop is the loss in a
 period. On the right the dots are these losses over the amplitude, on logarithmic axes; the line is the formula.

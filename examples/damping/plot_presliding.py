@@ -2,8 +2,9 @@ r"""
 How far does a contact give way before it slips?
 ================================================
 
-A bristle of stiffness :math:`\sigma` that is torn off gradually (P. R. Dahl, AIAA Journal 14 (1976) 1675-1682) has the
-force :math:`\mu N (1 - e^{-\sigma x/\mu})` after the way x: 95 % of slip after :math:`\mu \ln 20/\sigma`, at any speed.
+A bristle of stiffness :math:`\sigma` that is torn off gradually (P. R. Dahl, AIAA Journal 14 (1976) 1675-1682) has
+the force :math:`\mu N (1 - e^{-\sigma x/\mu})` after the displacement x: 95 % of slip after :math:`\mu \ln
+20/\sigma`, at any speed.
 
 The black line is the first pull from rest. The loops are cycles of small amplitude, which lose energy before
 anything slips.

@@ -2,9 +2,9 @@ r"""
 Why does a leaf spring ride hard on a smooth road?
 ==================================================
 
-Its leaves rub with F. Until the body's inertia exceeds that, they stick and the wheel's every motion goes straight
-through: on waves of height a and frequency :math:`\omega` the spring is a rigid block as long as :math:`m a \omega^2 <
-F`.
+Its leaves rub on each other with the force F. Until the body's inertia exceeds that, they stick and the wheel's every
+motion goes straight through: on waves of height a and frequency :math:`\omega` the spring is a rigid block as long as
+:math:`m a \omega^2 < F`.
 
 The frequency of the waves rises along the axis. Up to the critical one body and wheel move as one; beyond it the
 body moves less and less.

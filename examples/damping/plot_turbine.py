@@ -3,8 +3,8 @@ How hard should a damper press on a turbine blade?
 ==================================================
 
 Neither loosely nor so hard that it only follows. A damper of stiffness :math:`k_d` that slips at :math:`F = \mu N`
-takes :math:`4 F (a - F/k_d)` from a blade that moves by :math:`\pm a`: F times the way that it slips. That is most at
-:math:`F = k_d a/2`, and nothing from :math:`k_d a` on.
+takes :math:`4 F (a - F/k_d)` from a blade that moves by :math:`\pm a`: F times the distance that it slips in a
+period. That is most at :math:`F = k_d a/2`, and nothing from :math:`k_d a` on.
 
 The curve is the formula, the dots are runs. To the left of the maximum the damper slips nearly all the time, to the
 right it hardly slips at all.

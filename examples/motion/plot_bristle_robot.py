@@ -3,12 +3,12 @@ How fast does a robot on bristles creep along?
 ==============================================
 
 A weight swings in a robot that stands on bristles: friction against their lie, :math:`F_b`, is three times that with
-it, :math:`F_f`. Where the drive :math:`P\sin\omega t` never lets it stick, friction brings no momentum over a period T,
-so it slips forward for :math:`\tau = T F_b/(F_f + F_b)`, and the velocity is 0 at both ends of that. The middle of that
-time is at the phase :math:`\varphi` with :math:`2P\sin\varphi\sin(\omega\tau/2) = F_f\,\omega\tau`, and the way of a
-period follows from two integrals.
+it, :math:`F_f`. Where the drive :math:`P\sin\omega t` never lets it stick, friction gives it no momentum over a
+period T, so it slips forward for :math:`\tau = T F_b/(F_f + F_b)`, and the velocity is 0 at both ends of that. The
+middle of that time is at the phase :math:`\varphi` with :math:`2P\sin\varphi\sin(\omega\tau/2) = F_f\,\omega\tau`,
+and the distance covered in a period follows from two integrals.
 
-Above, the position, and the straight line of the mean; below, the friction force, which has another size each way.
+Above, the position, and the straight line of the mean; below, the friction force, whose size differs each way.
 """
 
 import math

@@ -3,7 +3,8 @@ How much of a conveyor's work becomes heat?
 ===========================================
 
 Half of it: a box laid on a belt of speed V needs friction for :math:`V/(\mu g)`, in which the belt pulls with
-:math:`\mu m g` over twice the box's way. The belt gives :math:`m V^2`, the box has :math:`m V^2/2` in the end.
+:math:`\mu m g` over twice the distance that the box travels. The belt gives :math:`m V^2`, the box has :math:`m
+V^2/2` in the end.
 
 The two areas are the kinetic energy of the box and the heat; together they fill the dashed line, the work of the
 belt.

@@ -2,12 +2,12 @@ r"""
 Can shaking carry a box along?
 ==============================
 
-Yes, if it is shaken slowly one way and quickly back: on a table that gains the speed V at :math:`a_1 < \mu g` and loses
-it at :math:`a_2 > \mu g`, the box slides on. The speeds meet again after :math:`\tau = V (1 + a_1/a_2)/(a_1 + \mu g)`;
-the area between them until then is the way that the box gains in a period.
+Yes, if it is shaken slowly one way and quickly back: on a table that gains the speed V at :math:`a_1 < \mu g` and
+loses it at :math:`a_2 > \mu g`, the box slides on. The speeds meet again after :math:`\tau = V (1 + a_1/a_2)/(a_1 +
+\mu g)`; the area between them until then is the distance that the box gains in a period.
 
 Above, the box follows the table while it speeds up, and slides on when the table stops. Below, each period adds the
-same way.
+same distance.
 """
 
 import matplotlib.pyplot as plt

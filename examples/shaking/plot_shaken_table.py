@@ -3,7 +3,7 @@ How hard must a table be shaken so that a box never sticks to it?
 =================================================================
 
 A box that always slides has a speed of straight lines of slope :math:`\pm\mu g`, with peaks of :math:`\mu g
-\pi/(2\omega)`, where it meets the table. It does not stick there if the table is faster in turning:
+\pi/(2\omega)`, where it meets the table. It does not stick there if the table accelerates harder at that instant:
 :math:`\omega\sqrt{V^2 - (\mu g\pi/2\omega)^2} > \mu g`, or :math:`V\omega/(\mu g) > \sqrt{1 + \pi^2/4} = 1.862`.
 
 Below the limit the box meets the table and sticks to it for a while; above it only passes the table's speed at an

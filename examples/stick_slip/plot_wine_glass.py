@@ -5,7 +5,8 @@ How far does the rim of a singing glass swing?
 The finger drives the rim until the rim keeps up with it: sticking to it, it cannot be faster. So the swing is
 :math:`v/\omega` whatever the law of friction, louder for a quicker finger; and the note is that of the glass.
 
-The rim starts from rest, grows within some periods, and keeps the size of the formula (dashed).
+The rim starts from rest, grows within some periods, and keeps the size of the formula (dashed); on the right its last
+10 ms.
 """
 
 import matplotlib.pyplot as plt

@@ -6,7 +6,7 @@ Dragged one way the lip leans by :math:`\mu N/k`, then it leans the other way. I
 has to come back by :math:`2\mu N/k` from its turn, and carries the lip's mass: it lets go after the time :math:`\tau`
 with :math:`(kA - mA\omega^2) \cos\omega\tau = kA - 2\mu N`.
 
-The lip leans to one side, rides on the glass to the other while it sticks, and leans there.
+The lip leans to one side, rides on the glass to the other side while it sticks, and leans there.
 """
 
 import math
