@@ -130,8 +130,13 @@ def test_what_an_analysis_cannot_take_is_named(given, name, argument, wrong, tex
 @pytest.mark.parametrize("name", ["sweep", "fit", "limit_cycle", "lyapunov", "bifurcation_diagram", "compare_regimes"])
 def test_a_misspelt_option_is_named_with_those_near(given, name):
     function, right = given[name]
-    with pytest.raises(UnknownNameError, match=rf"unknown option of {name} 'metod'; did you mean 'method'\?"):
+    with pytest.raises(UnknownNameError, match=rf"unknown option of {name} 'metod'; did you mean 'method'"):
         function(**right, metod="bdf")
+
+
+def test_an_argument_of_the_function_itself_is_suggested():
+    with pytest.raises(UnknownNameError, match=r"unknown option of limit_cycle 'perod'; did you mean 'period'"):
+        fm.analysis.limit_cycle(fm.models.belt_oscillator(), perod=1.0)
 
 
 def test_solve_dae_names_what_it_cannot_take(given):

@@ -106,7 +106,7 @@ def fit(
     """
     check_scene(scene)
     _check_search(loss, starts)
-    check_options("fit", options, simulate, "t_end", "t_eval", "parameters", "sensitivities", "rtol")
+    check_options("fit", options, simulate, "t_end", "t_eval", "parameters", "sensitivities", "rtol", call=fit)
     bounds, first = _bounds(scene, parameters)
     names = tuple(bounds)
     _check_first(scene, dict(zip(names, first.tolist(), strict=True)), bounds)

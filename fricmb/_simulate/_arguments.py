@@ -49,12 +49,22 @@ def check_scene(scene: Any) -> Scene:
     return scene
 
 
-def check_options(who: str, options: Mapping[str, Any], simulate: Callable[..., Any], *own: str) -> None:
-    """Whether what is passed on to ``simulate`` are options of it; ``own``: those that the caller gives it himself."""
+def check_options(
+    who: str,
+    options: Mapping[str, Any],
+    simulate: Callable[..., Any],
+    *own: str,
+    call: Callable[..., Any] | None = None,
+) -> None:
+    """Whether what is passed on to ``simulate`` are options of it.
+
+    ``own``: those that the caller gives it himself; ``call``: the function called, whose arguments may be meant.
+    """
     known = [name for name in inspect.signature(simulate).parameters if name not in ("scene", *own)]
     for name in options:
         if name not in known:
-            raise unknown_name(f"option of {who}", name, known)
+            meant = [] if call is None else [a for a in inspect.signature(call).parameters if a != "options"]
+            raise unknown_name(f"option of {who}", name, [*known, *meant])
 
 
 def check_span(t_start: float, t_end: Any, t_eval: Any) -> Span:

@@ -84,7 +84,7 @@ def sweep(
         ``results`` of this, and of any other error that ends the sweep, holds those made so far, and None for others.
     """
     check_scene(scene)
-    check_options("sweep", options, simulate, "t_end", "parameters")
+    check_options("sweep", options, simulate, "t_end", "parameters", call=sweep)
     if isinstance(runs, str | Mapping) or not isinstance(runs, Iterable):
         raise SceneError(f"runs: got {runs!r}; expected a list of dicts of parameter names and values, one a run")
     own = [dict(_checked(run, i)) for i, run in enumerate(runs)]

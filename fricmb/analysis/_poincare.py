@@ -228,7 +228,7 @@ def bifurcation_diagram(
     checked_kind(who, "over", over, str, "a name out of scene.parameters")
     checked_kind(who, "signal", signal, str, 'the name of a signal, such as "mass.x.velocity"')
     _check(who, section, period, discard)
-    check_options(who, options, simulate, "t_end", "parameters", "initial")
+    check_options(who, options, simulate, "t_end", "parameters", "initial", call=bifurcation_diagram)
     grid = checked_numbers(who, "values", values, "(n,) and finite")
     if grid.ndim != 1 or not np.isfinite(grid).all():
         raise AnalysisError(f"bifurcation_diagram: values must be (n,) and finite; got shape {grid.shape}")

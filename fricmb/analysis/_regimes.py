@@ -85,7 +85,7 @@ def compare_regimes(
     names = [part.name for part in checked_scene(who, scene).contacts]
     if not isinstance(contact, str) or contact not in names:
         raise unknown_name("contact", contact, names)
-    check_options(who, options, simulate, "t_end", "t_eval")
+    check_options(who, options, simulate, "t_end", "t_eval", call=compare_regimes)
     points = checked_integer(who, "points", points, 2, 10_000_000)
     t_end = positive(who, "t_end", t_end)
     part: Any = scene[contact]

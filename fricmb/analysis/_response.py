@@ -154,7 +154,8 @@ def frequency_response(
     if cycles and not isinstance(measure, str):
         raise AnalysisError(f"{_WHO}: cycles=True needs the name of a signal as measure, whose amplitude cycles have")
     checked_integer(_WHO, "periods", periods, _MEASURED + 1, 10**6)
-    check_options(_WHO, options, simulate, "t_end", "t_start", "t_eval", "parameters", "initial")
+    own = ("t_end", "t_start", "t_eval", "parameters", "initial")
+    check_options(_WHO, options, simulate, *own, call=frequency_response)
     sweep = _Sweep(scene=scene, over=over, measure=measure, periods=periods, options=options)
     with bar(2 * grid.size, "run", "response", progress) as shown:
         up = sweep.through(grid, None, shown)

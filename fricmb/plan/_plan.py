@@ -134,7 +134,10 @@ class Plan:
     def __str__(self) -> str:
         lines = [f"plan of {self.scene!r}"]
         width = max(len(name) for name in self.counts)
-        lines += [f"  {name:<{width}}  {count}" for name, count in self.counts.items() if count or name in _ALWAYS]
+        for name, count in self.counts.items():
+            if count or name in _ALWAYS:  # of a mechanism they are coordinates, more than what is free
+                label = "coordinates" if name == "degrees of freedom" and self.counts.get("joints") else name
+                lines.append(f"  {label:<{width}}  {count}")
         lines.append(f"  {'storage':<{width}}  {self.storage} (half-bandwidth {self.bandwidth})")
         if len(self.islands) > 1:
             lines.append("islands (each run on its own)")

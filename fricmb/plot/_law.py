@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,6 +19,7 @@ from fricmb.plot._units import Units, bare
 Floats = NDArray[np.float64]
 #: A curve whose values differ by less than this share is a straight line.
 _FLAT = 2e-3
+_Place = Literal["best", "center right"]
 #: Part of the width of loops that their names take beside them.
 _ROOM = 0.5
 #: Of the states in a loop: more than a picture shows.
@@ -186,7 +187,9 @@ def _name_units(ax: Axes, units: Units | None) -> None:
         ax.set_xlabel(bare(f"{label} [{unit}]"))
 
 
-def _finish(ax: Axes, x: str, y: str, *, legend: bool = False, logarithmic: bool = False, at: str = "best") -> None:
+def _finish(
+    ax: Axes, x: str, y: str, *, legend: bool = False, logarithmic: bool = False, at: _Place = "best"
+) -> None:
     if not logarithmic:
         ax.ticklabel_format(axis="x", style="sci", scilimits=(-2, 3))
         ax.locator_params(axis="x", nbins=6)

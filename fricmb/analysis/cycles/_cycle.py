@@ -176,7 +176,7 @@ def limit_cycle(
     period = None if period is None else positive(_WHO, "period", period)
     if start is not None and not isinstance(start, Solution | Cycle):
         refuse(_WHO, "start", start, "a Solution or a Cycle")
-    check_options(_WHO, options, simulate, *_OWN)
+    check_options(_WHO, options, simulate, *_OWN, call=limit_cycle)
     flow = Flow(scene=detached(scene), options={"rtol": rtol, **options})
     drive = None
     if is_driven(scene):

@@ -113,7 +113,8 @@ def lyapunov(
     discard = checked_number(_WHO, "discard", discard, "a number of at least 0", lambda x: x >= 0.0)
     if start is not None:
         checked_kind(_WHO, "start", start, Solution, "a Solution")
-    check_options(_WHO, options, simulate, "t_end", "t_start", "initial", "sensitivities", "rtol", "on_chunk", "chunk")
+    own = ("t_end", "t_start", "initial", "sensitivities", "rtol", "on_chunk", "chunk")
+    check_options(_WHO, options, simulate, *own, call=lyapunov)
     step = t_end / intervals
     before = int(np.ceil(discard * intervals))
     options = {"rtol": rtol, **options}
