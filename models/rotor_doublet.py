@@ -46,7 +46,7 @@ def rotor_doublet(
     damping_ratio, modal_mass : float
         Of both modes.
     angles : sequence of float
-        Where the pads are (rad).
+        Angles of the pads (rad).
     pad_mass, pad_stiffness, normal_force : float
         Of each pad.
     mu_s, mu_k : float

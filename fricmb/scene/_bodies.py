@@ -64,8 +64,8 @@ class Body(PartEnd):
     name : str
         Unique in a scene, without dots.
     mass : float
-        > 0.  Only runs accept 0: for a slider between one spring and one contact under Coulomb's law (a Jenkins
-        element), and for a body on springs whose velocity dampers or viscous laws determine (quasi-dynamic blocks).
+        > 0.  Runs also accept 0, for a slider between one spring and one contact under Coulomb's law (a Jenkins
+        element), and for a body on springs whose velocity follows from dampers or viscous laws (quasi-dynamic blocks).
     axes : str
         Any of "x", "y", "z"; each is a degree of freedom, named ``"name.x"``.
     position, velocity : dict of str to float

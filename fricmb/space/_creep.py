@@ -15,7 +15,7 @@ LEAST, SMALL = 1e-300, 1e-3
 class CreepLaw(FrictionLaw):
     """Base of laws of rolling contact; they take two directions of slip, along the rail and across.
 
-    Below the slope of saturation all of them are Kalker's linear theory, ``F_i = -f_ii u_i/speed``.
+    For small creepage all of them reduce to Kalker's linear theory, ``F_i = -f_ii u_i/speed``.
     """
 
     dimensions: ClassVar[tuple[int, ...]] = (2,)

@@ -32,13 +32,13 @@ class Lyapunov:
     Attributes
     ----------
     exponents : (n_y,)
-        Largest first; -inf for directions that landings have cut off.
+        Largest first; -inf for directions that an end of slip has wiped out.
     t : (n,)
         Times of the estimates.
     running : (n, n_y)
-        Estimates up to each of these times: how far they have settled.
+        Estimates up to each of these times, which show how far they have settled.
     solution : Solution
-        The last interval, to go on from.
+        The last interval, from which a further run can continue.
     """
 
     exponents: Floats
