@@ -149,6 +149,8 @@ class Mechanism:
         Whether impacts obey Poisson's law in place of Newton's.
     in_turn : bool
         Whether impacts at one instant are taken one after another.
+    jumps : bool
+        Whether an impact without collision goes on where no forces fit.
     """
 
     n: int
@@ -164,6 +166,7 @@ class Mechanism:
     least_mass: Floats = field(default_factory=lambda: _f(0))
     poisson: bool = False
     in_turn: bool = False
+    jumps: bool = False
 
     @property
     def has_impacts(self) -> bool:

@@ -31,6 +31,9 @@ class ImpactLaw(Part):
         How contacts hit or held at one instant are solved: "together", in one problem with a law for each contact; or
         "in_turn": each contact that approaches has an impact of its own, the fastest first, until none approaches any
         more.
+    painleve : str
+        Where a contact with restitution slips and no friction force, or more than one, fits: "end", the run ends with
+        an error; or "impact", an impact without collision stops its slip (events "impact" with approach 0).
 
     Raises
     ------
@@ -48,6 +51,11 @@ class ImpactLaw(Part):
     with the whole speed of the first, whereas solved together all of them move.  The fastest approach comes first; of
     two alike, the first in the order of the parts.  Contacts whose bounces come to rest, and contacts that still
     approach after 400 impacts, are brought to rest together.
+
+    A rod that slides on its tip may be pressed into the floor by its own friction, without bound (Painleve).  An impact
+    without collision is the solution of the law of impact beside that of no impulse: the tip stops, and by Poisson's
+    law is thrown up with ``e`` times the impulse that it took (F. Genot and B. Brogliato, European Journal of Mechanics
+    A 18 (1999) 653).
 
     Each phase obeys Coulomb's law by the slip at its end, ``-Lambda_T in mu Lambda_N Sgn(gamma_T)`` (F. Pfeiffer and
     C. Glocker, Multibody Dynamics with Unilateral Contacts, Wiley 1996, chapter 8, without restitution along the slip):
@@ -82,10 +90,11 @@ class ImpactLaw(Part):
     [0.0, 0.0, 1.0]
     """
 
-    _fixed: ClassVar[tuple[str, ...]] = ("name", "law", "several")
+    _fixed: ClassVar[tuple[str, ...]] = ("name", "law", "several", "painleve")
     _: KW_ONLY
     law: str = "newton"
     several: str = "together"
+    painleve: str = "end"
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -93,6 +102,8 @@ class ImpactLaw(Part):
             self._refuse("law", self.law, "'newton' or 'poisson'")
         if not is_one_of(self.several, "together", "in_turn"):
             self._refuse("several", self.several, "'together' or 'in_turn'")
+        if not is_one_of(self.painleve, "end", "impact"):
+            self._refuse("painleve", self.painleve, "'end' or 'impact'")
 
 
 def impact_law(parts: Iterable[Part]) -> ImpactLaw:

@@ -91,6 +91,7 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
         least_mass=_least_mass(parts, index, n),
         poisson=impacts.law == "poisson",
         in_turn=impacts.several == "in_turn",
+        jumps=impacts.painleve == "impact",
     )
     timed = [(s.template, s.parameters[:-1]) for s in signals.held] + contacts.timed + structure.timed
     known, searched = switches_of(timed)

@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 
 from fricmb.integrate.compile.direct import Direct
+from fricmb.integrate.constrained.attempt_step import RESTART
+from fricmb.integrate.constrained.failure_text import NEAR
 from fricmb.integrate.constrained.impact_alone import hit_alone, room_alone
 from fricmb.integrate.constrained.impact_in_turn import solve_in_turn
 from fricmb.integrate.constrained.impact_law import GAIN, Answer, Hit, solve_by_poisson, solve_impact
@@ -20,10 +22,11 @@ from fricmb.integrate.constrained.impact_log import ImpactLog, Outcome
 from fricmb.integrate.constrained.impact_rest import Bounces, Hop, Leaving
 from fricmb.integrate.constrained.impact_resume import put_state, resume, tell_changes
 from fricmb.integrate.constrained.impact_surfaces import Surfaces
+from fricmb.integrate.constrained.impact_without_collision import solve_without_collision
 from fricmb.integrate.constrained.impulse_matrix import ImpulseMatrix
 from fricmb.integrate.mechanism import APART
 from fricmb.integrate.problem import NORMAL_REACTION, Codes, Floats, Ints, Problem
-from fricmb.integrate.run.outcomes import DONE, FAIL_HIT, FAIL_LOST, FAIL_MODES, SLICE_OVER
+from fricmb.integrate.run.outcomes import DONE, FAIL_HIT, FAIL_LOST, FAIL_MARGIN, FAIL_MODES, FAIL_STEP, SLICE_OVER
 
 #: Part of the fastest speed by which speeds behind an impact differ if the order of its contacts matters.
 DIFFER = 1e-6
@@ -68,6 +71,10 @@ class Impacts:
         def go_on() -> int:
             for _ in range(MANY):
                 code = int(step(*drive.args))
+                if self.may_jump(code):
+                    code = self.jump(code)
+                    if code == DONE:
+                        continue
                 if code != FAIL_HIT:
                     return code
                 if _hit_alone(*known):
@@ -110,6 +117,9 @@ class Impacts:
         _put_state(y, before)
         e = self.joints.restitution[members].copy()
         code, outcome = self._apply(members, e, touched, ())
+        if outcome is not None and self.may_jump(code):
+            self._tell(members, touched, rate, outcome, [None] * len(members))
+            return self.jump(code)
         if code != DONE or outcome is None:
             return code
         hops = self._hops(members, touched, rate, outcome.answer, falls)
@@ -129,14 +139,50 @@ class Impacts:
             code, outcome = self._apply(members, e, touched, forced)
             if code != DONE or outcome is None:
                 return code
+        self._tell(members, touched, rate, outcome, hops)
+        return DONE
+
+    def _tell(self, members: Ints, touched: Any, rate: Floats, outcome: Outcome, hops: list[Hop | None]) -> None:
+        """Keep an impact and what changes with it."""
+        s, y = self.surfaces, self._workspace.y
         # what is left in touch by an impact may bear nothing: its round-off is that of the impulse over the run
         span, out = self._workspace.control.span, self._workspace.out
         push = float(np.abs(outcome.answer.impulse).max(initial=0.0)) / float(span[1] - span[0])
         out.top_force = max(float(out.top_force), push)
-        _tell_changes(self._mech, y, before, self._record)
+        _tell_changes(self._mech, y, self._workspace.before, self._record)
         rested = (touched & s.held)[members].tolist()
         self.log.add(float(y.t), members, rested, np.maximum(-rate[members], 0.0) + 0.0, outcome, hops)
-        return DONE
+
+    # -- without collision --------------------------------------------------------------------------------------
+    def may_jump(self, code: int) -> bool:
+        """Whether a run that finds no forces may go on by an impact without collision."""
+        if not self.surfaces.mechanism.jumps:
+            return False
+        # forces grow without bound towards the edge: steps come to nothing just before it
+        near = code == FAIL_STEP and float(self._workspace.out.margin.min(initial=1.0)) < NEAR
+        return near or code in (FAIL_MARGIN, FAIL_MODES)
+
+    def jump(self, code: int) -> int:
+        """An impact without collision of what is held and slips; ``code`` where there is none that stops it."""
+        s, y = self.surfaces, self._workspace.y
+        s.look()
+        members = np.flatnonzero(s.held)
+        if not members.size or self._piles_up(float(y.t), int(members.size)):
+            return code
+        rate, touched = np.zeros(len(self.joints.port)), np.isin(np.arange(len(self.joints.port)), members)
+        problem = self._hit(members, self.joints.restitution[members].copy(), ())
+        answer = solve_without_collision(problem[0], poisson=s.mechanism.poisson)
+        if answer is None:
+            return code
+        _put_state(y, self._workspace.before)
+        code, outcome = self._leave(members, problem, answer, touched, ())
+        if code == DONE and outcome is not None:
+            if self._record.used[0] > 0:
+                self._record.after[self._record.used[0] - 1] = 1
+            control = self._workspace.control  # towards the edge steps came to nothing
+            control.h = max(float(control.h), RESTART * float(control.longest))
+            self._tell(members, np.zeros_like(touched), rate, outcome, [None] * len(members))
+        return code
 
     def _piles_up(self, t: float, count: int) -> bool:
         """Whether there is no end of impacts at one instant."""
@@ -153,16 +199,28 @@ class Impacts:
         self, members: Ints, e: Floats, touched: Any, forced: tuple[int, ...]
     ) -> tuple[int, Outcome | None]:
         """Velocities, modes and reactions behind the impact with coefficients e of the members; some are held."""
-        s, y = self.surfaces, self._workspace.y
-        hit, push, reaction, held = self._hit(members, e, forced)
+        s = self.surfaces
+        problem = self._hit(members, e, forced)
+        hit = problem[0]
         law = solve_by_poisson if s.mechanism.poisson else solve_impact
         answer = solve_in_turn(hit, law) if s.mechanism.in_turn else law(hit)
         if not s.mechanism.in_turn and int((touched & s.open).sum()) > 1:
             self._compare(hit, answer, solve_in_turn(hit, law), members)
         if answer is None:
             names = ", ".join(repr(self.joints.names[j]) for j in members)
-            self.failure = f"no impulses satisfy the law of impact at t = {float(y.t):.10g} for {names} together"
+            self.failure = (
+                f"no impulses satisfy the law of impact at t = {float(self._workspace.y.t):.10g} for {names} together"
+            )
             return FAIL_HIT, None
+        return self._leave(members, problem, answer, touched, forced)
+
+    def _leave(
+        self, members: Ints, problem: tuple[Hit, Floats, Floats, Ints], answer: Answer, touched: Any,
+        forced: tuple[int, ...],
+    ) -> tuple[int, Outcome | None]:  # fmt: skip
+        """Velocities, modes and reactions behind impulses that have been found."""
+        s, y = self.surfaces, self._workspace.y
+        hit, push, reaction, held = problem
         outcome = Outcome(
             answer=answer, tangential=hit.tangential, lost=-0.5 * answer.impulse * (answer.rate + hit.rate)
         )

@@ -113,8 +113,8 @@ def solve_impact(hit: Hit) -> Answer | None:
     count = int(np.prod(np.where(hit.tangential < 0, 2.0, rubs)))
     if count > MOST:
         return _pivoted(hit)
-    for doing in _combinations(hit):
-        answer = _try(hit, doing, size)
+    for doing in combinations(hit):
+        answer = tried(hit, doing, size)
         if answer is None:
             continue
         if all(np.abs(answer.rate - other.rate).max() > 1e-6 * size for other in found):
@@ -123,7 +123,7 @@ def solve_impact(hit: Hit) -> Answer | None:
             break
     if not found and hit.forced.any():  # no friction fits what has to come to rest: it sticks
         free = replace(hit, mu=np.where(hit.forced, 1e300, hit.mu))
-        held = _try(free, tuple([STICKS] * hit.normal.size), size)
+        held = tried(free, tuple([STICKS] * hit.normal.size), size)
         found = [] if held is None else [held]
     if not found:
         return None
@@ -137,7 +137,7 @@ def _alone(hit: Hit) -> Answer:
     return Answer(impulse=impulse, rate=hit.rate + hit.D[0] * impulse, others=False)
 
 
-def _combinations(hit: Hit) -> Iterator[tuple[int, ...]]:
+def combinations(hit: Hit) -> Iterator[tuple[int, ...]]:
     """What each contact may do; first that all take an impulse and stick."""
     leaving = (LEAVES, LEAVES_FORWARD, LEAVES_BACKWARD)
     every = (
@@ -149,7 +149,7 @@ def _combinations(hit: Hit) -> Iterator[tuple[int, ...]]:
     return product(*kept)
 
 
-def _try(hit: Hit, doing: tuple[int, ...], size: float) -> Answer | None:
+def tried(hit: Hit, doing: tuple[int, ...], size: float) -> Answer | None:
     """The impulses of one combination, where they contradict nothing."""
     r, columns, rows = hit.rate.size, [], []
     target, impulse = hit.target, np.zeros(r)
@@ -224,7 +224,7 @@ def _pivoted(hit: Hit) -> Answer | None:
     size = float(np.abs(hit.rate).max(initial=0.0))
     doing = [FREE] * hit.normal.size
     for _ in range(50 * hit.normal.size):
-        answer = _try(hit, tuple(doing), size)
+        answer = tried(hit, tuple(doing), size)
         if answer is not None:
             return answer
         wrong = _first_wrong(hit, doing, size)

@@ -90,11 +90,13 @@ def run_mechanism(
         chunks, impacts = Chunks(record, "values", "span", "force", "mode", "opened", "after"), None
         go_on: Callable[[], int] = stepping
         code = begin(mech, k, w, y, control, out, part, start.mode is not None, small, reach)
+        if mechanism_of(problem).has_impacts:
+            impacts = Impacts(problem, mech, workspace, record, part)
+            code = impacts.jump(code) if impacts.may_jump(code) else code
         if code == DONE:
             chunks.note_changes(problem.contacts, start, y.mode, y.n)
             _settle(workspace, problem, start, t_end)
-            if mechanism_of(problem).has_impacts:
-                impacts = Impacts(problem, mech, workspace, record, part)
+            if impacts is not None:
                 code, go_on = impacts.at_start(), impacts.around(stepping)
         if code == DONE:
             code = chunks.fill(go_on, y, memory, progress)
