@@ -130,7 +130,7 @@ def reference_pages(app):
     here = Path(app.srcdir) / "reference"
     found = {
         name: json.loads((here.parent / "benchmark" / f"{name}.json").read_text(encoding="utf-8"))
-        for name in ("oracle", "oracle_laws")
+        for name in ("oracle", "oracle_laws", "oracle_impacts")
     }
     by_hand = json.loads((here.parent / "benchmark" / "impact_error.json").read_text(encoding="utf-8"))
     for name, text in {

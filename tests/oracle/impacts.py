@@ -43,6 +43,14 @@ def poisson(rng: Generator) -> Drawn:
     return Drawn("poisson", "impacts", {**drawn.n, "e_t": 0.0, "poisson": True})
 
 
+def carried(rng: Generator) -> Drawn:
+    """A disc, a rod or a box thrown on a table that swings up and down under it, with friction and a belt on it."""
+    n, w = draw_thrown(rng), some(rng, 4.0, 20.0)
+    swing = [round(some(rng, 0.1, 1.5) * G / w**2, 5), w, even(rng, 0.0, 6.28)]
+    law = {"poisson": True, "e_t": 0.0} if rng.random() < 0.3 else {}
+    return Drawn("carried", "impacts", {"situation": "thrown", **n, "swing": swing, **law})
+
+
 # -- blocks in line ---------------------------------------------------------------------------------------------
 def draw_blocks(rng: Generator) -> dict[str, Any]:
     """One to three blocks with springs, loads and dry friction; stops, play and bumpers."""
@@ -120,6 +128,16 @@ def flat(name: str, row: np.ndarray, width: float, e: float, **more: Any) -> Sur
     return Surface(name=name, gap=lambda q: float(row @ q) + width, row=lambda q: row, e=e, **more)
 
 
+def swings(A: float, w: float, phase: float) -> Callable[[float], tuple[float, float, float]]:
+    """Place, speed and acceleration of ``A sin(w t + phase)``."""
+
+    def moves(t: float) -> tuple[float, float, float]:
+        s, c = math.sin(w * t + phase), math.cos(w * t + phase)
+        return A * s, A * w * c, -A * w * w * s
+
+    return moves
+
+
 # -- on a table -------------------------------------------------------------------------------------------------
 def draw_table(rng: Generator) -> dict[str, Any]:
     """One or two balls, one on the other, above a table that swings."""
@@ -145,11 +163,7 @@ def table(n: dict[str, Any]) -> Hard:
     stops = [fm.Stop(f"s{i}", body, below[i], axis="y", lower=0.0, restitution=n["e"][i]) for i, body in
              enumerate(bodies)]  # fmt: skip
 
-    def moves(t: float) -> tuple[float, float, float]:
-        s, c = math.sin(w * t + phase), math.cos(w * t + phase)
-        return A * s, A * w * c, -A * w * w * s
-
-    surfaces = [flat("s0.lower", np.eye(count)[0], 0.0, n["e"][0], moves=moves)]
+    surfaces = [flat("s0.lower", np.eye(count)[0], 0.0, n["e"][0], moves=swings(A, w, phase))]
     if count > 1:
         surfaces.append(flat("s1.lower", np.array([-1.0, 1.0]), 0.0, n["e"][1]))
     masses = np.array(n["masses"])
@@ -204,7 +218,8 @@ def thrown(n: dict[str, Any]) -> Hard:
     more = {"e": n["e"], "e_t": n["e_t"], "mu_s": mu_s, "mu_k": mu_k, "slides": lambda t: (belt, 0.0)}
     s, c = math.sin(n["angle"]), math.cos(n["angle"])
     lowest = -r if n["body"] == "disc" else min(a * s + b * c for a, b in n["points"])
-    place = (0.0, n["above"] - lowest)
+    A, w, phase = n.get("swing", (0.0, 1.0, 0.0))
+    place = (0.0, n["above"] + A - lowest)
     body = fm.RigidBody(
         "b", mass=n["mass"], inertia=n["inertia"], position=place, velocity=tuple(n["v"]), angle=n["angle"],
         angular_velocity=n["spin"], points={f"p{i}": tuple(p) for i, p in enumerate(n["points"])},
@@ -214,13 +229,18 @@ def thrown(n: dict[str, Any]) -> Hard:
         rub["slide"] = belt
     rub |= {"push_only": True, "restitution": n["e"]}
     parts: list[Any] = [body, fm.Gravity("g")]
+    under: Any = fm.GROUND
+    if A:
+        under = fm.Driven("plate", position={"y": A * sympy.sin(w * fm.t + phase)})
+        parts.append(under)
+        more["moves"] = swings(A, w, phase)
     surfaces = []
     if n["body"] == "disc":
-        parts.append(fm.Wheel("c0", body, radius=r, **rub))
+        parts.append(fm.Wheel("c0", body, under, radius=r, **rub))
         along = np.array([1.0, 0.0, r])
         surfaces.append(flat("c0", np.array([0.0, 1.0, 0.0]), -r, along=lambda q: along, **more))
     for i, p in enumerate(n["points"]):
-        parts.append(fm.RollerOnLine(f"c{i}", body.point(f"p{i}"), **rub))
+        parts.append(fm.RollerOnLine(f"c{i}", body.point(f"p{i}"), under, **rub))
         surfaces.append(corner(f"c{i}", p, **more))
     if n["wall"]:
         width, e = n["wall"]
@@ -235,7 +255,7 @@ def thrown(n: dict[str, Any]) -> Hard:
 
     problem = Struck(
         M=np.diag([n["mass"], n["mass"], n["inertia"]]), force=force, q=np.array([*place, n["angle"]]),
-        v=np.array([*n["v"], n["spin"]]), t_end=n["t_end"], surfaces=tuple(surfaces), longest=0.05,
+        v=np.array([*n["v"], n["spin"]]), t_end=n["t_end"], surfaces=tuple(surfaces), longest=min(0.05, 0.3 / w),
     )  # fmt: skip
     scene = fm.Scene("thrown", parts)
     return Hard(name="", scene=scene, problem=problem, signals=("b.x", "b.y", "b.angle"))

@@ -12,7 +12,7 @@ from .driven import driven
 from .drives import drives
 from .feet import feet
 from .groups import bare, elsewhere, together
-from .impacts import impacts, poisson
+from .impacts import carried, impacts, poisson
 from .inputs import excursion as excursions
 from .inputs import shaken as inputs
 from .machines import machines
@@ -325,7 +325,7 @@ KINDS: dict[str, Callable[[Generator], Any]] = {
     "line": line, "shaken": shaken, "guided": guided, "plane": plane, "stack": stack, "loop": loop, "modes": modes,
     "chain": chain, "tree": tree, "roller": roller, "inputs": inputs, "excursions": excursions, "feet": feet,
     "driven": driven, "drives": drives, "together": together, "bare": bare, "elsewhere": elsewhere,
-    "units": other_units, "beside": other_scales, "impacts": impacts, "poisson": poisson,
+    "units": other_units, "beside": other_scales, "impacts": impacts, "poisson": poisson, "carried": carried,
     "machines": machines,
 }  # fmt: skip
 

@@ -24,6 +24,7 @@ FOUND = {
     60: "the same where both are thrown up",
     177: "the same on a table that moves on",
     12: "corners in turn: rest of one of them between two impacts of the other",
+    810052: "a block that a stop and dry friction hold at once: their shares grew from step to step until it stopped",
     2044: "corners that come to rest in turn: one was pulled down, the other one fell through the floor",
 }
 
@@ -103,6 +104,9 @@ def test_a_pendulum_with_dry_friction_rests_on_its_stop():
 #: The same by Poisson's law.
 POISSON = (5, 10, 14)
 
+#: On tables that swing, with friction: a disc by Newton's law, a box by Poisson's.
+CARRIED = (4, 6)
+
 
 def test_what_is_far_away_does_not_rest_with_others():
     """Dry friction holds all blocks behind the last impact: no acceleration says how long a hop is there."""
@@ -113,7 +117,11 @@ def test_what_is_far_away_does_not_rest_with_others():
 
 
 @pytest.mark.parametrize(
-    ("kind", "seed"), [*(("impacts", n) for n in (*SEEDS.values(), *FOUND)), *(("poisson", n) for n in POISSON)]
+    ("kind", "seed"),
+    [
+        *(("impacts", n) for n in (*SEEDS.values(), *FOUND)), *(("poisson", n) for n in POISSON),
+        *(("carried", n) for n in CARRIED),
+    ],
 )
 def test_impacts_are_as_the_oracle_says(kind, seed):
     true = make({}, generate(kind, seed)).truth()
