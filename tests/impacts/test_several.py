@@ -165,3 +165,27 @@ def test_a_note_says_that_the_order_of_impacts_at_one_instant_matters():
     sol = fm.simulate(fm.Scene("balls", [*balls, *touch]), t_end=2.0)
     (note,) = (note for note in sol.stats.notes if "in_turn" in note)
     assert "'t0', 't1' are hit at one instant, t = 1" in note
+
+
+@pytest.mark.parametrize("mu", [None, 0.3])
+def test_both_corners_of_a_box_let_go_at_one_instant_where_its_table_drops(mu):
+    """Their loads fall to 0 together, and what is left of the second one is round-off."""
+    A, w, g, high, slide = 0.1, 12.0, 9.81, 0.2, 0.4
+    under = fm.Driven("table", position={"y": A * sympy.sin(w * fm.t)})
+    box = fm.RigidBody(
+        "box", mass=1.2, inertia=0.03, position=(0.0, high), velocity=(slide, A * w),
+        points={"l": (-0.3, -high), "r": (0.3, -high)},
+    )  # fmt: skip
+    rub = {} if mu is None else {"friction": fm.laws.Coulomb(mu_s=mu)}
+    feet = [
+        fm.RollerOnLine(end, box.point(end), under, push_only=True, restitution=0.0, **rub) for end in ("l", "r")
+    ]
+    sol = fm.simulate(fm.Scene("box", [under, box, *feet, fm.Gravity("g")]), t_end=0.2, rtol=1e-8)
+    lifts = math.asin(g / (A * w * w)) / w
+    assert np.allclose([event.t for event in sol.events.of(kind="open")], lifts, rtol=0, atol=1e-9)
+    assert {event.contact for event in sol.events.of(kind="open")} == {"l", "r"}
+    left = 0.2 - lifts
+    exact = high + A * math.sin(w * lifts) + A * w * math.cos(w * lifts) * left - g * left**2 / 2
+    assert abs(sol["box.y"][-1] - exact) < 1e-9
+    assert np.abs(sol["box.angle"]).max() < 1e-9
+    assert len(sol.events.of(kind="impact")) == 0

@@ -33,9 +33,13 @@ class Instant:
         return self.rates + np.stack([self.normals @ jump, self.alongs @ jump], axis=1)
 
     def newton(self, e: np.ndarray, e_t: np.ndarray) -> np.ndarray:
-        """The jump of velocities."""
+        """The jump of velocities; an error where the law gains energy, as seen from the surfaces."""
         aim = np.stack([-e * np.minimum(self.rates[:, 0], 0.0), -e_t * self.rates[:, 1]], axis=1)
-        return self.phase(self.rates, aim, np.zeros(len(e)))[0]
+        jump, push = self.phase(self.rates, aim, np.zeros(len(e)))
+        gains = 0.5 * push * (self.rates + self.behind(jump))
+        if gains.sum() > 1e-9 * np.abs(gains).sum():
+            raise OracleError("an impact gains energy")
+        return jump
 
     def poisson(self, e: np.ndarray) -> np.ndarray:
         """The same in two phases."""

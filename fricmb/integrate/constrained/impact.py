@@ -33,6 +33,8 @@ DIFFER = 1e-6
 #: Impacts at one instant, for each contact, after which the run ends.
 PILE = 8
 
+#: Load that is none, beside the largest force.
+LIGHT = 1e-10
 #: Impacts between two looks at what else ends a run.
 MANY = 100
 
@@ -71,10 +73,12 @@ class Impacts:
         def go_on() -> int:
             for _ in range(MANY):
                 code = int(step(*drive.args))
+                if code == FAIL_STEP:
+                    code = self.lift_off(code)
                 if self.may_jump(code):
                     code = self.jump(code)
-                    if code == DONE:
-                        continue
+                if code == DONE and ws.y.t < ws.control.span[1]:
+                    continue
                 if code != FAIL_HIT:
                     return code
                 if _hit_alone(*known):
@@ -177,12 +181,38 @@ class Impacts:
         _put_state(y, self._workspace.before)
         code, outcome = self._leave(members, problem, answer, touched, ())
         if code == DONE and outcome is not None:
-            if self._record.used[0] > 0:
-                self._record.after[self._record.used[0] - 1] = 1
-            control = self._workspace.control  # towards the edge steps came to nothing
-            control.h = max(float(control.h), RESTART * float(control.longest))
+            self._begin_anew()
             self._tell(members, np.zeros_like(touched), rate, outcome, [None] * len(members))
         return code
+
+    def lift_off(self, code: int) -> int:
+        """Let go of what bears nothing where steps come to nothing; ``code`` where that is not so.
+
+        Of contacts whose loads fall to 0 at one instant, such as corners of a box on a table that drops, one lets go
+        first; those of the others are round-off then.
+        """
+        s, y = self.surfaces, self._workspace.y
+        s.look()
+        load = np.where(s.held, y.lam[s.first], np.inf)
+        members = np.flatnonzero(load <= LIGHT * float(self._workspace.out.top_force))
+        if not members.size or self._piles_up(float(y.t), int(members.size)):
+            return code
+        _put_state(y, self._workspace.before)
+        for j in members.tolist():
+            s.set_open(j, True)
+        found = self._resume([])
+        if found != DONE or s.falling(members, s.rates(y.v)).size:
+            return code
+        _tell_changes(self._mech, y, self._workspace.before, self._record)
+        self._begin_anew()
+        return DONE
+
+    def _begin_anew(self) -> None:
+        """Go on behind steps that came to nothing."""
+        record, control = self._record, self._workspace.control
+        if record.used[0] > 0:
+            record.after[record.used[0] - 1] = 1
+        control.h = max(float(control.h), RESTART * float(control.longest))
 
     def _piles_up(self, t: float, count: int) -> bool:
         """Whether there is no end of impacts at one instant."""

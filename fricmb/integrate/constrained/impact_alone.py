@@ -271,8 +271,10 @@ def momentum_times(mech: Mech, u: Floats, v: Floats) -> float:
 @kernel
 def bounces_on(a: Alone, j: int, speed: float, rises: float, falls: float, size: float, noise: float, t: float) -> bool:
     """Whether this is surely not the last bounce (see ``Bounces.after``)."""
+    if speed <= SHORT * size:
+        return False
     if not (rises > 0.0 and falls > 0.0) or not a.e[j] * np.sqrt(falls / rises) < 1.0:
-        return bool(speed > SHORT * size)
+        return True
     up = speed / rises
     T = up * (1.0 + np.sqrt(rises / falls)) / (1.0 - a.e[j] * np.sqrt(falls / rises))
     lost = speed * up / 2.0 < SEEN * noise or 64.0 * EPS * abs(t) >= T

@@ -30,7 +30,7 @@ LOCATED = 16.0
 NEXT = 10.0
 #: Height of a hop beside the round-off of distances, below which there is none.
 SEEN = 1e3
-#: Part by which the ratio of times between impacts may change from one to the next in a geometric series.
+#: Part of the last time between impacts to which a geometric series has to tell what is left.
 STEADY = 1e-3
 
 
@@ -142,7 +142,10 @@ class Bounces:
         lost = leaving.speed * up / 2.0 < SEEN * leaving.noise or 64.0 * EPS * abs(leaving.t) >= T
         calm = abs(rate) * T <= CALM * a
         if not lost and not (SHORT * leaving.size / a >= T and calm):
-            return Hop(ends=False)
+            # hops that shrink otherwise than accelerations say have others on their way
+            _, one, other = self.times[j]
+            odd = bool(np.isfinite(one)) and abs(other - ratio * one) > 0.1 * other
+            return self._in_series(leaving) if odd else Hop(ends=False)
         change = rate * T / a if calm else CALM
         left = T * (1.0 - change / 3.0)
         bound = T * change * change + leaving.noise / leaving.speed / (1.0 - ratio) + (T if lost and not calm else 0.0)
@@ -157,10 +160,10 @@ class Bounces:
         if not (np.isfinite(times).all() and times.min() > 0.0 and leaving.speed <= SHORT * leaving.size):
             return Hop(ends=False)
         before, ratio = times[1:] / times[:-1]
-        if not ratio < 1.0 or abs(ratio - before) > STEADY * ratio:
+        if not ratio < 1.0 or abs(ratio - before) > STEADY * (1.0 - ratio) ** 2:
             return Hop(ends=False)
         left = times[-1] * ratio / (1.0 - ratio)
-        bound = left * abs(ratio - before) / (1.0 - ratio) + leaving.noise / leaving.speed / (1.0 - ratio)
+        bound = times[-1] * abs(ratio - before) / (1.0 - ratio) ** 2 + leaving.noise / leaving.speed / (1.0 - ratio)
         return Hop(ends=True, left=float(left), bound=float(bound) + self._unknown(leaving))
 
     def _unknown(self, leaving: Leaving) -> float:
