@@ -334,12 +334,29 @@ class _Linkage:
             if end[0] != GROUND_SHAPE:
                 sketch.links.append(Link(kind=kind, name=part.name, a=start, b=end))
             return
+        if end[0] == GROUND_SHAPE and kind == "play" and getattr(part, "axis", None) in ("x", "y"):
+            self._walls(part, start)
+            return
         if end[0] == GROUND_SHAPE:
             end = self._anchor(part, start, end)
             here = self.sketch.where(start, 0)
             angle = float(np.arctan2(end[2] - here[1], end[1] - here[0]))
             sketch.marks.append(Mark(kind="wall", at=end, angle=angle))
         sketch.links.append(Link(kind=kind, name=part.name, a=start, b=end))
+
+    def _walls(self, part: Any, start: Spot) -> None:
+        """Where limits along an axis are, as walls that what moves runs against."""
+        sketch, row, number = self.sketch, "xy".index(part.axis), start[0]
+        here = sketch.where(start, 0)
+        outline = sketch.turned(number, sketch.shapes[number].outline, 0)
+        rim, size = outline[:, row] - here[row], 0.5 * float(np.ptp(outline[:, 1 - row]))
+        for limit, side, beyond in zip(part.limits(), (-1.0, 1.0), (rim.min(), rim.max()), strict=True):
+            if limit is not None:
+                at = here.copy()
+                at[row] = float(value_of(limit)) + beyond
+                angle = float(np.arctan2(side, 0.0) if row else np.arctan2(0.0, side))
+                spot = (GROUND_SHAPE, float(at[0]), float(at[1]))
+                sketch.marks.append(Mark(kind="wall", at=spot, angle=angle, size=size))
 
     def _torsion(self, part: Any, start: Spot, end: Spot) -> None:
         """A spiral at the pin of a body that is held from the ground, a coiled shaft between two wheels."""

@@ -193,3 +193,14 @@ def test_stops_and_play_that_do_not_give_are_drawn_as_those_that_do():
         }  # fmt: skip
     gears = sketch_of_scene(fm.models.gear_rattle())
     assert "play" in {link.kind for link in gears.links}
+
+
+def test_stops_of_a_body_to_scale_are_walls_that_its_rim_runs_against():
+    cart = fm.RigidBody("cart", mass=1.0, inertia=0.02, position=(0.1, 0.2))
+    parts = [
+        cart, fm.Wheel("floor", cart, radius=0.2),
+        fm.Stop("ends", cart, axis="x", lower=-0.8, upper=0.5, restitution=0.7),
+    ]
+    walls = [mark for mark in sketch_of_scene(fm.Scene("cart", parts)).marks if mark.kind == "wall"]
+    assert np.allclose([mark.at[1] for mark in walls], [-1.0, 0.7])
+    assert np.allclose([mark.angle for mark in walls], [np.pi, 0.0])
