@@ -30,7 +30,11 @@ def find_integrator(method: Any, problem: Problem, rtol: float) -> tuple[Integra
     if integrator is None:
         from fricmb.integrate import choose
 
-        return choose(problem, rtol)
+        integrator, why = choose(problem, rtol)
+        refusal = integrator.refuses(problem) if problem.contacts.lean.any() else None
+        if refusal is not None:
+            raise SceneError(refusal)
+        return integrator, why
     refusal = integrator.refuses(problem)
     if refusal is not None:
         raise SceneError(f"method: {refusal}")

@@ -79,7 +79,8 @@ class Points:
             # at rest to the accuracy of the run a direction of slip is no more than the run's own
             stated = law.force(g[at], N[sliding], z[at])
             still = (np.abs(g[at]) <= unit[at]).all(axis=0)
-            ends = still & (law.size(F[at]) <= law.limit(N[sliding]) + self.units.rtol * law.limit(N[sliding]))
+            limit = law.limit(N[sliding])
+            ends = still & (law.held(F[at], N[sliding]) <= limit + self.units.rtol * limit)
             self._compare("friction law", np.where(ends, stated, F[at]), stated, slack, t[sliding], law.name)
         if stuck.any():
             ratio = (np.abs(g[:, stuck]) / (2.0 * unit[:, stuck] + 1e-300)).max(axis=0)
@@ -185,7 +186,7 @@ class Points:
         names = self.statements.names
         own = slice(int(names.row[k]), int(names.row[k + 1]))
         stuck = samples.mode[k] == STICK
-        size = law.size(samples.F[own] * names.row_scale[own])
+        size = law.held(samples.F[own] * names.row_scale[own], samples.N[k])
         limit = law.limit(samples.N[k])
         unit = self.units.rtol * limit + self._force_unit(k) + 1e-300
         share = np.where(stuck, size / (limit + 1e-300), 0.0)

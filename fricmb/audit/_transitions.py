@@ -172,7 +172,7 @@ class Changes:
         return sum(int(rows.mode[c, j] == SLIP) for c in group) > 1
 
     def _at_limit(self, law: Rubs, k: int, before: Samples, own: slice) -> bool:
-        size = law.size(before.F[own] * self.statements.names.row_scale[own])
+        size = law.held(before.F[own] * self.statements.names.row_scale[own], before.N[k])
         limit = law.limit(before.N[k])
         return bool(size[0] >= limit[0] * (1.0 - self.units.rtol) - self._force_unit(own))
 
@@ -196,13 +196,14 @@ class Changes:
         force, N = held
         limit = float(law.limit(np.array([N]))[0])
         unit = self.units.rtol * limit + 1e-7 * float(np.linalg.norm(force)) + 1e-300
-        over = (limit - float(law.size(force[:, None])[0])) / unit
+        size = float(law.held(force[:, None], np.array([N]))[0])
+        over = (limit - size) / unit
         for _ in range(2 if over > 1.0 else 0):
             moved = holding(self.statements, self.units.perturbed(moment, rng), k, stuck, h)
             if moved is not None:
                 shift = float(np.linalg.norm(moved[0] - force)) + abs(float(law.limit(np.array([moved[1]]))[0]) - limit)
                 unit = max(unit, self.units.rtol * limit + shift)
-        return (limit - float(law.size(force[:, None])[0])) / unit
+        return (limit - size) / unit
 
 
 def opening(rows: Samples, k: int) -> Floats:

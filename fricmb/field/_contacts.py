@@ -62,6 +62,7 @@ class Rubs:
         self.name, self.law = name, law
         self.numeric = law.numeric().centred
         self.smooth = law.kind == "smooth"
+        self.lean = 0.0 if self.smooth else float(law.numeric().lean())
         held = law.numeric().offsets() if steady and law.offsets() else ()
         self.offsets = np.array(held, dtype=float)[:, None] if held else None
 
@@ -85,6 +86,10 @@ class Rubs:
         mu = self.law.break_away() if path is not None else self.numeric.coefficient(np.zeros(N.shape), N)
         found: Floats = np.asarray(mu) * N
         return found
+
+    def held(self, F: Floats, N: Floats) -> Floats:
+        """Length (n_t,) of a force that holds, about the centre of the cone at rest; within :meth:`limit` it sticks."""
+        return self.size(F + self.lean * self.limit(N)) if self.lean else self.size(F)
 
     def size(self, F: Floats) -> Floats:
         """Length (n_t,) of a force, over the cone's axes."""

@@ -48,6 +48,8 @@ class Integrator(ABC):
         Parts of a problem it can run: of "linear", "ports", "nonlinear", "constraints".
     pauses : bool
         Whether a run returns early where ``memory`` is used up, so that long runs need no more.
+    two_limits : bool
+        Whether it runs contacts whose limit of friction at rest differs by the sense (``Contacts.lean``).
     """
 
     name: ClassVar[str]
@@ -55,6 +57,7 @@ class Integrator(ABC):
     order: ClassVar[str]
     takes: ClassVar[frozenset[str]]
     pauses: ClassVar[bool] = False
+    two_limits: ClassVar[bool] = False
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""
@@ -62,6 +65,9 @@ class Integrator(ABC):
             return f"{self.name} does not take bodies that turn and joints; 'radau' and 'bdf' do"
         if "nonlinear" not in self.takes and len(problem.elements.table.address):
             return f"{self.name} takes linear structures with contacts; this scene has nonlinear elements"
+        if problem.contacts.lean.any() and not self.two_limits:
+            name = self.name
+            return f"{name} has one limit of friction at rest, and here it differs by the sense; take 'radau' or 'bdf'"
         return None
 
     @abstractmethod

@@ -198,6 +198,9 @@ class Contacts(Kept):
         Break-away coefficient and limit of the slip coefficient for r -> 0 (``mu_k`` of a constant law).  The sign
         of ``mu_s`` is a flag: below 0 the contact breaks away at ``mu_0`` under the present normal force, and |mu_s| is
         what that is at the start.
+    lean : (n_c,)
+        How far the centre of a cone in one direction is off 0 while the contact sticks, over its limit: it sticks while
+        ``|F + lean mu_s N| <= mu_s N``.  (Empty: all 0.)
     piecewise : (n_c,) bool
         Whether a law is a table or compiled by itself: its slope may jump, or what it is made of.
     knot_start : (n_c+1,) int64; knots : (sum,)
@@ -225,6 +228,7 @@ class Contacts(Kept):
     law_table: Templates = field(default_factory=Templates)
     mu_s: Floats = field(default_factory=lambda: _f(0))
     mu_0: Floats = field(default_factory=lambda: _f(0))
+    lean: Floats = field(default_factory=lambda: _f(0))
     piecewise: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=bool))
     knot_start: Ints = field(default_factory=lambda: _i(0))
     knots: Floats = field(default_factory=lambda: _f(0))

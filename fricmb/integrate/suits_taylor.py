@@ -22,6 +22,8 @@ def _against_taylor(problem: Problem) -> str | None:
         return "this scene has nonlinear elements"
     if (contacts.law == LAW_SMOOTH).any() or (contacts.normal != NORMAL_CONSTANT).any() or problem.n_z:
         return "every contact needs a coefficient of friction and a constant normal force"
+    if contacts.lean.any():
+        return "the limit of friction at rest must be the same in both senses"
     if (contacts.piecewise & (contacts.law != LAW_CONSTANT)).any():
         return "coefficients of friction that depend on slip speed must be formulas"
     return once_per(linear, "against taylor", lambda: _against_structure(linear, problem.n))

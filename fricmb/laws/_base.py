@@ -179,6 +179,14 @@ class FrictionLaw(Regimes, Declaration):
         """
         return ()
 
+    def rest_offsets(self) -> tuple[Any, ...]:
+        """The same of what a contact sticks by, where that has another centre."""
+        return self.offsets()
+
+    def lean(self) -> float:
+        """Centre of the cone at rest less that in slip, over the break-away coefficient."""
+        return 0.0
+
     def remark(self) -> str:
         """Sentence that the notes of a run with this law contain; "" for none."""
         return ""

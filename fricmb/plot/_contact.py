@@ -53,7 +53,7 @@ def static_limit(sol: Solution, contact: str) -> Floats | None:
 def static_centre(sol: Solution, contact: str) -> Floats:
     """Centre (d, n_t) of the cone of a contact: 0, but for a law with offsets."""
     law = sol.scene[contact].law
-    offsets = np.array(law.numeric().offsets() or (0.0,) * len(sol.force(contact)), dtype=float)
+    offsets = np.array(law.numeric().rest_offsets() or (0.0,) * len(sol.force(contact)), dtype=float)
     found: Floats = -offsets[:, None] * sol.normal_force(contact)
     return found
 

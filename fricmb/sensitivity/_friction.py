@@ -41,6 +41,8 @@ class Friction:
         self.part, self.number, self.states, self.name, self.d = part, number, states, part.name, d
         self.law = law
         self.smooth = law.kind == "smooth"
+        if not self.smooth and law.lean():
+            refuse(part, "friction whose break-away exceeds slip by another amount forward than back")
         self.numbers = seeds.numbers(law, prefix)
         own = law.compiled_force(self.d) if self.smooth else law.compiled_coefficient()
         self.compiled = own is not None

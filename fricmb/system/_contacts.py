@@ -63,6 +63,7 @@ class ContactArrays:
     law_table: TableBuilder = field(default_factory=TableBuilder)
     mu_s: list[float] = field(default_factory=list)
     mu_0: list[float] = field(default_factory=list)
+    lean: list[float] = field(default_factory=list)
     piecewise: list[bool] = field(default_factory=list)
     knots: list[tuple[float, ...]] = field(default_factory=list)
     normal: list[int] = field(default_factory=list)
@@ -83,9 +84,9 @@ class ContactArrays:
     def lists(self) -> tuple[list[Any], ...]:
         """See :class:`Growing`."""
         return (
-            self.rows, self.w, self.law, self.law_table.entries, self.mu_s, self.mu_0, self.piecewise, self.knots,
-            self.normal, self.N, self.normal_table.entries, self.normal_rows, self.N0, self.labels, self.states,
-            self.scale, self.names,
+            self.rows, self.w, self.law, self.law_table.entries, self.mu_s, self.mu_0, self.lean, self.piecewise,
+            self.knots, self.normal, self.N, self.normal_table.entries, self.normal_rows, self.N0, self.labels,
+            self.states, self.scale, self.names,
         )  # fmt: skip
 
     def marks(self) -> tuple[int, ...]:
@@ -165,6 +166,7 @@ class ContactArrays:
         labels = law.state_labels(self.labels[-1])
         self.piecewise.append(compiled)
         self.states.append(labels)
+        self.lean.append(0.0 if compiled or not law.offsets() else float(law.numeric().lean()))
         constant = template.is_constant(p)
         self.knots.append(() if constant or template.facts["kind"] == "smooth" else knots_of(law, template, p))
         if not constant:
@@ -255,6 +257,7 @@ class ContactArrays:
             "mu_s": np.array(self.mu_s, dtype=float),
             "piecewise": np.array(self.piecewise, dtype=bool),
             "mu_0": np.array(self.mu_0, dtype=float),
+            "lean": np.array(self.lean, dtype=float),
             "knot_start": starts(self.knots),
             "knots": np.array([r for own in self.knots for r in own], dtype=float),
             "z_start": starts(self.states),

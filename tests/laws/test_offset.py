@@ -169,7 +169,7 @@ def test_what_is_no_cone_about_a_centre_is_refused():
     body = fm.RigidBody("b", mass=1.0, inertia=1.0)
     refused = {
         "within the cone of slow slip": lambda: fm.laws.Offset(law=coulomb, offset=0.3),
-        "the same forward and back": lambda: fm.laws.Offset.by_sense(mu_s=(0.3, 0.6), mu_k=(0.2, 0.3)),
+        "at most mu_s forward and back": lambda: fm.laws.Offset.by_sense(mu_s=(0.3, 0.6), mu_k=(0.2, 0.7)),
         "two coefficients": lambda: fm.laws.Offset.by_sense(mu_s=0.3),
         "a set-valued law of the slip speed": lambda: fm.laws.Offset(law=fm.laws.LuGre.example(), offset=0.1),
         "without an offset": lambda: fm.laws.Offset.example().regularised(1e-3),

@@ -54,6 +54,27 @@ def softness(problem: Problem, m: Mechanism, port_joint: Ints) -> Floats:
     return np.where(looped, SOFT, 0.0)
 
 
+def shares_a_loop(problem: Problem, m: Mechanism, port_joint: Ints) -> NDArray[np.bool_]:
+    """Whether another port is in a loop of joints and contacts with each port (n_c,): they may hold more than there is.
+
+    Loops are parts of the graph of bodies that stay together whatever single body is taken out.
+    """
+    import networkx as nx
+
+    tied = _ties(problem, m, port_joint)
+    joints = len(m.joints.port)
+    own = [int(j) if j >= 0 else joints + c for c, j in enumerate(port_joint)]
+    graph = nx.Graph()
+    for nodes in tied:
+        graph.add_edges_from((a, b) for a in nodes for b in nodes if a < b)
+    found = np.zeros(len(own), dtype=bool)
+    for part in nx.biconnected_components(graph):
+        inside = [c for c, block in enumerate(own) if len(tied[block]) > 1 and tied[block] <= part]
+        if len(inside) > 1:
+            found[inside] = True
+    return found
+
+
 def _is_independent(problem: Problem, some: NDArray[np.bool_]) -> bool:
     """Whether rows of ``some`` contacts (n_c,) of a linear structure follow from no others: nothing is redundant then.
 

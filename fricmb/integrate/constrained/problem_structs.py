@@ -9,13 +9,13 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.blocks_of_mechanism import load_mechanism
-from fricmb.integrate.constrained.loop_softness import softness
+from fricmb.integrate.constrained.loop_softness import shares_a_loop, softness
 from fricmb.integrate.constrained.pattern import of_pattern
 from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.constrained.unknown_order import ordering
 from fricmb.integrate.mechanism import Mechanism, loads_of
 from fricmb.integrate.model.damped_normals import damped_normals
-from fricmb.integrate.model.problem_structs import Spread, Table, knot_starts, spread_of, table_of
+from fricmb.integrate.model.problem_structs import Spread, Table, knot_starts, leans, spread_of, table_of
 from fricmb.integrate.model.structure import ties
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import NORMAL_CONSTANT, NORMAL_LAW, Codes, Floats, Ints, Pivots, Problem
@@ -93,6 +93,7 @@ class Port(Layout):
     law: Codes
     mu_s: Floats
     mu_0: Floats
+    lean: Floats
     knot_start: Ints
     knots: Floats
     z_start: Ints
@@ -170,6 +171,7 @@ def _pack(problem: Problem) -> Mech:
         port_joint, solid(contacts.row, np.int64),
         _softness(problem, m, port_joint), table_of(m.slip),
         solid(contacts.w), solid(contacts.law, np.int8), solid(contacts.mu_s), solid(contacts.mu_0),
+        leans(contacts),
         knot_starts(contacts), solid(contacts.knots), solid(contacts.z_start, np.int64), normal,
         damped_normals(problem),
         np.where(contacts.normal == NORMAL_CONSTANT, contacts.N, 0.0), solid(contacts.N0),
@@ -202,6 +204,15 @@ def _softness(problem: Problem, m: Mechanism, port_joint: Ints) -> Floats:
     if problem.mechanism is None:
         return softness(problem, m, port_joint)
     return of_pattern(problem, "softness", lambda: softness(problem, m, port_joint))
+
+
+def leans_in_a_loop(problem: Problem) -> bool:
+    """Whether a port whose cone at rest has its centre off 0 is in a loop with another one."""
+    m = mechanism_of(problem)
+    port_joint = np.full(problem.n_c, -1, np.int64)
+    for j in np.flatnonzero(m.joints.port >= 0):
+        port_joint[m.joints.port[j]] = j
+    return bool((shares_a_loop(problem, m, port_joint) & (problem.contacts.lean != 0.0)).any())
 
 
 def masses(m: Mechanism) -> Floats:

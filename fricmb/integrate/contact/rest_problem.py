@@ -67,7 +67,7 @@ def rest_of(problem: Problem) -> Rest:
 
 def fill_rest(r: Rest, packed: Packed) -> None:
     """Put the contacts of a scene into arrays made for another of the same sizes."""
-    for name in ("row", "W", "w", "Wu", "D", "mu_s", "mu_0", "Wn", "N0"):
+    for name in ("row", "W", "w", "Wu", "D", "mu_s", "mu_0", "lean", "Wn", "N0"):
         mine, given = getattr(r.ports, name), getattr(packed.ports, name)
         if mine is not given:
             mine[...] = given

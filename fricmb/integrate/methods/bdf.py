@@ -15,7 +15,7 @@ from fricmb.integrate.methods.backward_differences import differences
 from fricmb.integrate.methods.bdf_stability import guard_of, spectrum
 from fricmb.integrate.methods.blocks_of_run import load_stages
 from fricmb.integrate.methods.one_step import run_one_step
-from fricmb.integrate.methods.radau import bdf_in_a_band, condensed_after, stopped_in_a_band
+from fricmb.integrate.methods.radau import against_sharing, bdf_in_a_band, condensed_after, stopped_in_a_band
 from fricmb.integrate.methods.run_setup import Collector, cost, run_loop, set_accuracy, stages_for
 from fricmb.integrate.methods.run_workspace import run_workspace, step_workspace
 from fricmb.integrate.methods.time_loop import drive
@@ -57,13 +57,15 @@ class Bdf(Integrator):
     name: ClassVar[str] = "bdf"
     order: ClassVar[str] = "1 to 5"
     takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports", "nonlinear", "constraints"})
+    two_limits: ClassVar[bool] = True
     pauses: ClassVar[bool] = True
 
     stages: int | None = None
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""
-        return odd_stages(self.name, problem, self.stages) or super().refuses(problem)
+        odd = odd_stages(self.name, problem, self.stages)
+        return odd or against_sharing(problem) or super().refuses(problem)
 
     def integrate(
         self,

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 from fricmb.integrate.integrator import Tolerance, odd_stages
 from fricmb.integrate.methods.one_step import OneStepMethod
 from fricmb.integrate.methods.run_setup import follows_series, stages_for
+from fricmb.integrate.model.problem_structs import softness
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.stop import ended
 from fricmb.integrate.step.tableau import radau
@@ -52,6 +53,20 @@ def condensed_after(stopped: Trajectory, run: Trajectory) -> Trajectory:
     return run
 
 
+def against_sharing(problem: Problem) -> str | None:
+    """What stands against friction whose limit at rest differs by the sense, or None: that it is shared in a loop."""
+    if not problem.contacts.lean.any():
+        return None
+    if problem.mechanism is None:
+        shared = softness(problem) > 0.0
+    else:
+        from fricmb.integrate.constrained.problem_structs import leans_in_a_loop
+
+        shared = leans_in_a_loop(problem)
+    what = "friction whose limit at rest differs by the sense is not shared among contacts that are redundant"
+    return what if shared else None
+
+
 @dataclass(frozen=True, kw_only=True)
 class Radau(OneStepMethod):
     """Radau IIA of ``stages`` stages, order 2 stages - 1, on linear and nonlinear structures.
@@ -65,12 +80,14 @@ class Radau(OneStepMethod):
     name: ClassVar[str] = "radau"
     order: ClassVar[str] = "2s - 1"
     takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports", "nonlinear", "constraints"})
+    two_limits: ClassVar[bool] = True
 
     stages: int | None = None
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""
-        return odd_stages(self.name, problem, self.stages) or super().refuses(problem)
+        odd = odd_stages(self.name, problem, self.stages)
+        return odd or against_sharing(problem) or super().refuses(problem)
 
     def nodes(self, problem: Problem, rtol: float) -> Sequence[float]:
         """Right Radau points."""

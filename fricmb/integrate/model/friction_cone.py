@@ -3,11 +3,14 @@ r"""The friction cone: what a contact can hold while it sticks.
 .. math:: |F| \le \mu_s(N) \, N
 
 Its two sides are ``friction_size`` and ``stick_limit``; all that decides between stick and slip asks for them, or for
-one of the forms below. A cone of another shape begins here: with another size (an ellipse whose axes are those of the
-rows is done without it, by ``Elliptic.axis_scale`` and the scale of the rows in ``system/_contacts``), or with a
-limit that is given the force as well, for a law that depends on its direction. Slip has to follow: its velocity is
-along the normal of the set of forces, which ``step/contact_unknowns`` and ``constrained/friction_rows`` say for a cone,
-``constrained/plane_slip`` for one of two directions in scenes with joints.
+one of the forms below.  In one direction break-away may exceed slip by different amounts in the two senses, ``|F + lean
+mu_s N| <= mu_s N`` (``held_size``); loops, whose forces are shared, know no lean, and methods refuse it there.
+
+A cone of another shape begins here: with another size (an ellipse whose axes are those of the rows is done without it,
+by ``Elliptic.axis_scale`` and the scale of the rows in ``system/_contacts``), or with a limit that is given the force
+as well, for a law that depends on its direction.  Slip has to follow: its velocity is along the normal of the set of
+forces, which ``step/contact_unknowns`` and ``constrained/friction_rows`` say for a cone, ``constrained/plane_slip`` for
+one of two directions in scenes with joints.
 
 Methods for special structures know more, and write the same formula as it serves them:
 
@@ -59,19 +62,29 @@ def friction_size(row: Ints, k: int, F: Floats) -> float:
 
 
 @kernel
+def held_size(ports: Laws, k: int, F: Floats, limit: float) -> float:
+    """What a force that holds contact k counts against its limit: its length, about the centre that it leans to."""
+    lean = ports.lean[k]
+    if lean != 0.0:
+        return float(abs(F[ports.row[k]] + lean * limit))
+    return float(magnitude(ports.row, k, F))
+
+
+@kernel
 def cone_margin(ports: Laws, laws: Table, k: int, s: Scratch, F: Floats, N: float) -> float:
     """How far the force of a contact is from its friction cone, mu_s N - |F|; below 0 it cannot stick."""
-    return float(stick_limit(ports, laws, k, s, N) - friction_size(ports.row, k, F))
+    limit = stick_limit(ports, laws, k, s, N)
+    return float(limit - held_size(ports, k, F, limit))
 
 
 @kernel
 def squared_margin(ports: Laws, k: int, F: Floats, limit: float) -> float:
     """The same by squares, (mu_s N)^2 - |F|^2: a polynomial where F and N are."""
-    return float(limit * limit - friction_size(ports.row, k, F) ** 2)
+    return float(limit * limit - held_size(ports, k, F, limit) ** 2)
 
 
 @kernel
 def load_factor(ports: Laws, k: int, F: Floats, limit: float) -> float:
     """|F| over its limit, above 1 beyond the cone; 2 for any force where there is nothing to hold it."""
-    size = friction_size(ports.row, k, F)
+    size = held_size(ports, k, F, limit)
     return float(size / limit if limit > 0.0 else (2.0 if size > 0.0 else 0.0))

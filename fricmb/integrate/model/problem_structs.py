@@ -54,6 +54,7 @@ class Ports(Layout):
     law: Codes
     mu_s: Floats
     mu_0: Floats
+    lean: Floats
     knot_start: Ints
     knots: Floats
     z_start: Ints
@@ -148,6 +149,13 @@ def knot_starts(contacts: Contacts) -> Ints:
     return np.zeros(len(contacts.law) + 1, np.int64)
 
 
+def leans(contacts: Contacts) -> Floats:
+    """How far the centre of each cone is off 0 at rest (n_c,)."""
+    if len(contacts.lean):
+        return np.ascontiguousarray(contacts.lean)
+    return np.zeros(len(contacts.law))
+
+
 def spread_of(problem: Problem) -> Spread:
     """Where the forces of a problem's elements act; one spare coefficient, as in a table."""
     elements = problem.elements
@@ -172,6 +180,7 @@ def _pack(problem: Problem) -> Packed:
         solid(contacts.row, np.int64), W, solid(contacts.w), solid(contacts.Wu),
         mobility_at_contacts(problem),
         solid(contacts.law, np.int8), solid(contacts.mu_s), solid(contacts.mu_0),
+        leans(contacts),
         knot_starts(contacts), solid(contacts.knots), solid(contacts.z_start, np.int64),
         np.where(varies, 0.0, contacts.N), solid(contacts.Wn), solid(contacts.N0), var,
         (contacts.normal == NORMAL_LAW).astype(np.int8), damped_normals(problem), softness(problem),

@@ -59,6 +59,10 @@ class Laws(Protocol):
         """Limit of the coefficient of slip at rest."""
 
     @property
+    def lean(self) -> Floats:
+        """Centre of what a contact sticks by, over its limit."""
+
+    @property
     def row(self) -> Ints:
         """Where the rows of each contact begin."""
 

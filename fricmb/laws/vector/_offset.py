@@ -33,18 +33,21 @@ class Offset(Shaped):
     offset : float, or two of them
         Coefficient along each direction of the contact.  0 stays in the cone of slow slip: without a force nothing
         sets out, and all slip dissipates.
+    rest_offset : float, optional
+        The same at rest, in one direction, where break-away exceeds slip by different amounts in the two senses
+        (default: ``offset``).  Break-away is below slip in neither.
 
     Raises
     ------
     LawError
-        If the offset is beyond the cone, or the law not set-valued.
+        If an offset is beyond the cone, or the law not set-valued.
 
     Notes
     -----
     The normal force of the contact is a number or an expression.  In ``sol.energy`` what the offset takes is part of
-    the friction loss under a number, and input under an expression.  A break-away that exceeds slip by different
-    amounts in the two senses is no cone about one centre, and is refused; a curve inside falls by the same amount in
-    both.
+    the friction loss under a number, and input under an expression.  A curve inside falls by the same amount
+    in both senses.  With a ``rest_offset`` ``radau`` and ``bdf`` locate break-away in both senses; other methods,
+    derivatives, and contacts that are redundant refuse it.
 
     References
     ----------
@@ -62,6 +65,7 @@ class Offset(Shaped):
     isotropic: ClassVar[bool] = False
 
     offset: Any
+    rest_offset: Any = None
 
     @property
     def dimensions(self) -> tuple[int, ...]:  # type: ignore[override]
@@ -71,6 +75,17 @@ class Offset(Shaped):
     def offsets(self) -> tuple[Any, ...]:
         """One for each direction."""
         return self.offset if isinstance(self.offset, tuple) else (self.offset,)
+
+    def rest_offsets(self) -> tuple[Any, ...]:
+        """Centre of the cone at rest."""
+        return self.offsets() if self.rest_offset is None else (self.rest_offset,)
+
+    def lean(self) -> float:
+        """How far that is off the centre in slip, over the break-away coefficient."""
+        if self.rest_offset is None:
+            return 0.0
+        shift = float(value_of(self.rest_offset)) - float(value_of(self.offset))
+        return shift / self.break_away() if shift else 0.0
 
     @property
     def centred(self) -> FrictionLaw:
@@ -105,6 +120,13 @@ class Offset(Shaped):
         size = math.hypot(*(float(c) / float(s) for c, s in zip(self.offsets(), scale, strict=True)))
         if size > self.law.slip_limit() * (1 + 1e-12):
             self._refuse("offset", self.offset, f"within the cone of slow slip, of size {self.law.slip_limit():g}")
+        if self.rest_offset is None:
+            return
+        if isinstance(self.offset, tuple):
+            self._refuse("rest_offset", self.rest_offset, "left out in two directions")
+        excess = self.break_away() - self.law.slip_limit()
+        if abs(float(self.rest_offset) - float(self.offset)) > excess * (1 + 1e-12):
+            self._refuse("rest_offset", self.rest_offset, f"within {excess:g} of offset: break-away is not below slip")
 
     def check(self) -> None:
         """The law inside is set-valued and has its centre at 0."""
@@ -134,13 +156,12 @@ class Offset(Shaped):
                 raise LawError(f"Offset.by_sense: {name} must be two coefficients (forward, back), got {pair!r}")
         slip = mu_s if mu_k is None else mu_k
         excess = [float(value_of(s)) - float(value_of(k)) for s, k in zip(mu_s, slip, strict=True)]
-        if abs(excess[0] - excess[1]) > 1e-12 * max(abs(float(value_of(c))) for c in mu_s):
-            raise LawError(
-                f"Offset.by_sense: mu_s less mu_k must be the same forward and back, got {excess[0]:g} and"
-                f" {excess[1]:g}: stick and slip are then no cones about one centre"
-            )
+        round_off = 1e-12 * max(abs(float(value_of(c))) for c in mu_s)
+        if min(excess) < -round_off:
+            raise LawError(f"Offset.by_sense: mu_k must be at most mu_s forward and back, got {slip!r} above {mu_s!r}")
         law = Coulomb(mu_s=(mu_s[0] + mu_s[1]) / 2, mu_k=None if mu_k is None else (mu_k[0] + mu_k[1]) / 2)
-        return cls(law=law, offset=(slip[0] - slip[1]) / 2)
+        rest = (mu_s[0] - mu_s[1]) / 2 if abs(excess[0] - excess[1]) > round_off else None
+        return cls(law=law, offset=(slip[0] - slip[1]) / 2, rest_offset=rest)
 
     @classmethod
     def example(cls) -> Self:
