@@ -217,3 +217,26 @@ def test_steady_motion_sees_the_load_of_the_other_joint():
     steady = fm.analysis.steady_sliding(scene, speeds={"disc.angle": -4.0})
     assert steady.position("disc.x") == pytest.approx(0.2 * M * G / 50, rel=1e-9)
     assert steady.force("floor_rolling")[0] == pytest.approx(ARM * M * G, rel=1e-9)
+
+
+def test_a_wheel_that_has_bounced_to_rest_is_slowed_down():
+    """It bounces, rolls with 2/3 of its speed, and loses f/R g/(1 + k^2/R^2) then; derivatives are refused."""
+    m, R, f, g = 2.0, 0.1, 0.002, 9.81
+    disc = fm.RigidBody("disc", mass=m, inertia=m * R * R / 2, position=(0.0, 0.5), velocity=(1.0, 0.0))
+    floor = fm.Wheel(
+        "floor", disc, radius=R, friction=fm.laws.Coulomb(mu_s=0.2), rolling_resistance=f, push_only=True,
+        restitution=0.5,
+    )  # fmt: skip
+    scene = fm.Scene("bounces", [disc, floor, fm.Gravity("g", acceleration={"y": -g})])
+    sol = fm.simulate(scene, t_end=2.5, rtol=1e-8)
+    (rest,) = [float(event.t) for event in sol.events if event.kind == "rest"]
+    # two bounces take sqrt(2 h/g), and what follows halves: 3 sqrt(2 h/g) in all
+    assert rest == pytest.approx(3 * math.sqrt(2 * 0.4 / g), rel=1e-6)
+    # it is held from before its last hops on, whose sum dates the rest
+    (held,) = [float(event.t) for event in sol.events if event.kind == "close"]
+    assert 0.0 <= rest - held < 1e-5
+    speed = 2 / 3 - f / R * g / 1.5 * (2.5 - held)
+    assert sol.velocity("disc.x")[-1] == pytest.approx(speed, rel=1e-10)
+    assert sol.audit().ok
+    with pytest.raises(fm.FricmbError, match="resistance beside impacts is not covered"):
+        fm.simulate(scene, t_end=0.6, sensitivities=("disc.velocity.x",))

@@ -337,8 +337,8 @@ class Impacts:
         """Modes and reactions of what is held; ports of ``members`` that are held are so from now on."""
         ws, fresh = self._workspace, np.zeros(self.problem.n_c, np.int8)
         for j in members:
-            if self.joints.port[j] >= 0 and not self.surfaces.open[j]:
-                fresh[self.joints.port[j]] = 1
+            if not self.surfaces.open[j]:
+                fresh[self.surfaces.pressed_ports(j)] = 1
         ws.out.opened = int((self.joints.dropped == APART).sum())
         return int(_resume(self._mech, ws.k, ws.w, ws.y, ws.control, ws.out, self._part, fresh))
 

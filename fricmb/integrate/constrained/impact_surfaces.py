@@ -9,7 +9,7 @@ import numpy as np
 from fricmb.integrate.compile.direct import Direct
 from fricmb.integrate.constrained.impact_rows import gap_accelerations, impact_rows
 from fricmb.integrate.constrained.structure import mechanism_of
-from fricmb.integrate.mechanism import APART, RIGID
+from fricmb.integrate.mechanism import APART, RIGID, loads_of
 from fricmb.integrate.problem import OPEN, Floats, Ints, Problem
 from fricmb.integrate.run.breakpoints import EPS
 
@@ -126,12 +126,17 @@ class Surfaces:
         mine = members[found[members]]
         return np.asarray(mine[np.argsort(-pressed[mine])], dtype=np.int64)
 
+    def pressed_ports(self, joint: int) -> Ints:
+        """Ports whose load is the reaction of a joint: its own, and that of resistance against rolling on it."""
+        ports = self.joints.port[loads_of(self.joints) == joint]
+        return np.asarray(ports[ports >= 0], dtype=np.int64)
+
     def set_open(self, joint: int, apart: bool) -> None:
-        """Mark a joint as open, its reaction and friction 0; or as held."""
-        y, row, c = self._workspace.y, self.problem.contacts.row, int(self.joints.port[joint])
+        """Mark a joint as open, its reaction and all friction that it loads 0; or as held."""
+        y, row = self._workspace.y, self.problem.contacts.row
         self.joints.dropped[self.first[joint]] = APART if apart else 0
         if apart:
             y.lam[self.first[joint]] = 0.0
-            if c >= 0:
+            for c in self.pressed_ports(joint).tolist():
                 y.mode[c] = OPEN
                 y.F[row[c] : row[c + 1]] = 0.0
