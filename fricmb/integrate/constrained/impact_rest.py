@@ -97,6 +97,7 @@ class Bounces:
         self.falls: Floats = np.zeros(n)
         self.count = np.zeros(n, np.int64)
         self.times: Floats2 = np.full((n, 3), np.inf)
+        self._shared = -np.inf, 0.0
         self.clock: Floats = np.array([t_start, 0.0, -np.inf, 0.0])
 
     def begin(self, t: float) -> None:
@@ -149,6 +150,11 @@ class Bounces:
         change = rate * T / a if calm else CALM
         left = T * (1.0 - change / 3.0)
         bound = T * change * change + leaving.noise / leaving.speed / (1.0 - ratio) + (T if lost and not calm else 0.0)
+        # what another contact has struck meanwhile, as in a stack, need not make the hops that gravity alone would; nor
+        # does what goes on bouncing beside it
+        if self.clock[1] < 0.999 * since < np.inf:
+            self._shared = leaving.t + NEXT * left, float(left)
+        bound += self._shared[1] if leaving.t <= self._shared[0] else 0.0
         return Hop(ends=True, left=float(left), bound=float(bound) + self._unknown(leaving))
 
     def _in_series(self, leaving: Leaving) -> Hop:
