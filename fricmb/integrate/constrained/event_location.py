@@ -40,10 +40,11 @@ def from_touch(st: Stages, out: Watch, j: int, h: float, rate: float) -> float:
     """Where a distance that is 0 at the start of a step h, and opens at a rate, vanishes again; -1 where it does not.
 
     By the polynomial of the distance over the time, without the root at the start: hops may be far shorter than steps.
+    At a rate of 0 an acceleration opens it; the slope of the distance itself is round-off there, and may be below 0.
     """
     for i in range(st.tab.c.shape[0]):
         out.values[i] = out.inner[i + 1, j] / st.tab.c[i]
-    x = first_crossing(st.tab, rate * h, out.values, out.series)
+    x = first_crossing(st.tab, max(rate, 0.0) * h, out.values, out.series)
     return x * h if 0.0 < x <= 1.0 else -1.0
 
 
@@ -82,7 +83,7 @@ def locate_trigger(
     # where friction ends or begins; loads that set in or bend are found from both sides
     exact = (first < n_slips and first % 2 == 0) or is_open(mech, first - n_slips)
     guess, slope = by_polynomial(st, out, first, h) if inside >= 1.0 and exact else (-1.0, 0.0)
-    if opens > 0.0 and out.inner[0, first] <= 10.0 * grain(mech, out, first, y):
+    if is_open(mech, first - n_slips) and out.inner[0, first] <= 10.0 * grain(mech, out, first, y):
         guess, slope = from_touch(st, out, first, h, opens), 0.0
     for i in range(80):
         gap = f_low - f_high

@@ -93,15 +93,21 @@ class Surfaces:
         return STILL * self.reach()
 
     def touched(self, rate: Floats) -> Any:
-        """Open joints (n_j,) that are hit now, or touch: at the same time by the time to contact, not the distance."""
+        """Open joints (n_j,) that are hit now, or touch: at the same time by the time to contact, not the distance.
+
+        What comes soonest is hit as well, if its time is within the step, or nothing touches.
+        """
         opened = self.open
-        span = self._workspace.control.span
+        span, h = self._workspace.control.span, float(self._workspace.control.h)
         same = SAME * abs(float(self._workspace.y.t)) + SHORTEST * float(span[1] - span[0])
         near = 10.0 * self.noise + same * np.abs(rate)
         found = opened & (self.gap <= near)
         comes = np.flatnonzero(opened & (rate < 0.0))
         if comes.size:
-            found[comes[int(np.argmin(self.gap[comes] / -rate[comes]))]] = True
+            left = self.gap[comes] / -rate[comes]
+            soonest = int(np.argmin(left))
+            if left[soonest] <= h or not found.any():
+                found[comes[soonest]] = True
         return found
 
     def pressed(self) -> Floats:
