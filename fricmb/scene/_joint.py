@@ -61,6 +61,8 @@ class Joint(Part):
     _beside: ClassVar[frozenset[str]] = frozenset(("friction",))
     #: Whether the joint has slip and load.
     takes_friction: ClassVar[bool] = False
+    #: Whether reaction and friction are mean and difference of two tensions (``sol.tensions``).
+    has_tensions: ClassVar[bool] = False
     #: Number of directions of slip.
     slip_rows: ClassVar[int] = 1
     #: Whether its constraints depend on the motion of its ends relative to one another alone: they stay satisfied where

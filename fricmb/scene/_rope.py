@@ -83,9 +83,10 @@ class Rope(Joint):
     ten-billionth of the mass that they pull at, whose ``x`` is how far the rope is out at the drum; ``rope_1_span``, a
     spring with a damper; ``rope_2_pull``, the tension that is given.
 
-    Where friction jumps as such a rope lets go (mu_s > mu_k), its way follows at once and then within c/k.  Steps may
-    be longer than that: the motion of bodies is right, and the loss of the dampers in ``sol.energy`` is not, which
-    notes of the run and the audit say; ``max_step`` below c/k closes the ledger.
+    Where friction jumps as such a rope lets go (mu_s > mu_k), or the rope slides from the start, its way follows within
+    c/k.  Steps may be longer than that: the motion of bodies is right, and the loss of the dampers in ``sol.energy`` is
+    not, which notes of the run and the audit say.  For ropes that start at rest ``max_step`` below c/k closes the
+    ledger.
 
     Parameters of a scene are ``"rope.mu"``, ``"rope.angle"``, ``"rope_1_span.stiffness"`` and the like, and, of a law
     with mu_s > mu_k, ``"rope.friction.mu_s"``: how many times the difference at break-away is that of slip.
@@ -115,6 +116,7 @@ class Rope(Joint):
     """
 
     takes_friction: ClassVar[bool] = True
+    has_tensions: ClassVar[bool] = True
     positive: ClassVar[tuple[str, ...]] = ("angle",)
     _fixed: ClassVar[tuple[str, ...]] = ("name", "a", "b", "drum", "axes", "when_slack", "beside")
 

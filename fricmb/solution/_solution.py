@@ -150,7 +150,7 @@ class Solution(Signals):
         UnknownNameError
             For the name of another part; lists the ropes.
         """
-        ropes = [joint.name for joint in self.scene.joints if type(joint).__name__ == "Rope"]
+        ropes = [joint.name for joint in self.scene.joints if joint.has_tensions]
         if not isinstance(name, str) or name not in ropes:
             raise unknown_name("rope", name, ropes)
         mean, difference = self.reaction(name)[0], self.force(name)[0]

@@ -92,10 +92,9 @@ class Collocation(Integrator):
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""
-        if problem.mechanism is not None:
-            return super().refuses(problem)
-        if problem.contacts.lean.any():
-            return "collocation has one limit of friction at rest; here it differs by the sense of the force"
+        against = super().refuses(problem)
+        if against is not None:
+            return against
         if problem.bends.table.address.size:
             return "collocation follows forces by polynomials; here some bend with the motion (Max, Abs, Piecewise)"
         if softness(problem) > 0.0:

@@ -13,7 +13,7 @@ from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.lu import lu_factor, lu_solve
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.impact_law import GAIN, ROUND_OFF
-from fricmb.integrate.constrained.impact_rest import SEEN, SHORT, Bounces
+from fricmb.integrate.constrained.impact_rest import INSTANT, SEEN, SHORT, Bounces
 from fricmb.integrate.constrained.impact_resume import go_on
 from fricmb.integrate.constrained.impact_rows import accelerations_of_gaps, rows_at
 from fricmb.integrate.constrained.impact_surfaces import SAME, SHORTEST, STILL
@@ -39,7 +39,8 @@ class Alone(Layout):
     Of each joint (n_j,) ``e``, ``e_t``, ``mu`` coefficients; ``t``, ``falls``, ``count`` its last impact (see
     ``Bounces``), ``times`` (n_j, 3) those between the last ones; ``clock`` (4,) time of the last impact of any, time
     since the one before, time of the last and number of impacts at one instant; ``bears`` (n_c,) 1 for dry ports that
-    have borne an impulse; ``found`` (5,) impulses along the normal and slip, approach, energy lost, the joint.
+    have borne an impulse; ``held``, ``of`` (m,) rows that hold, and their joints; ``found`` (5,) impulses along the
+    normal and slip, approach, energy lost, the joint.
     """
 
     poisson: int
@@ -53,6 +54,8 @@ class Alone(Layout):
     clock: Floats
     bears: Codes
     fresh: Codes
+    held: Ints
+    of: Ints
     found: Floats
     v: Floats
     G: Floats2
@@ -123,39 +126,44 @@ def lone_joint(mech: Mech, y: State, c: Control, out: Watch, a: Alone) -> int:
 
 
 @kernel
-def answers(mech: Mech, y: State, a: Alone, j: int, rows: int) -> int:
+def find_held(mech: Mech, a: Alone) -> int:
+    """Rows of joints without restitution that hold now, into ``a.held``; their number."""
+    joint, m = mech.joint, 0
+    for i in range(joint.port.shape[0]):
+        for r in range(joint.row[i], joint.row[i + 1] if joint.hands_over[i] != RIGID else joint.row[i]):
+            if joint.dropped[r] == 0:
+                a.held[m], a.of[m] = r, i
+                m += 1
+    return m
+
+
+@kernel
+def answers_alone(mech: Mech, y: State, a: Alone, j: int, rows: int) -> int:
     """Changes of velocities, and of what holds both ways, by unit impulses of joint j: ``a.push`` (2, n + m).
 
     Number of rows that hold; -1 where there are too many, or they depend on one another.
     """
-    joint, n, m = mech.joint, y.v.shape[0], 0
-    for i in range(joint.port.shape[0]):
-        for r in range(joint.row[i], joint.row[i + 1] if joint.hands_over[i] != RIGID else joint.row[i]):
-            m += 1 if joint.dropped[r] == 0 else 0
+    n, m = y.v.shape[0], find_held(mech, a)
     if n + m > MOST:
         return -1
     K, sizes, pivots = np.zeros((n + m, n + m)), np.zeros(4, np.int32), np.zeros(n + m, np.int32)
     for e in range(mech.linear.M.shape[0]):
         K[mech.linear.Mi[e], mech.linear.Mj[e]] += mech.linear.M[e]
-    at = n
-    for i in range(joint.port.shape[0]):
-        for r in range(joint.row[i], joint.row[i + 1] if joint.hands_over[i] != RIGID else joint.row[i]):
-            if joint.dropped[r] == 0:
-                for e in range(n):
-                    K[at, e] = K[e, at] = a.G[r, e]
-                at += 1
+    for i in range(m):
+        for e in range(n):
+            K[n + i, e] = K[e, n + i] = a.G[a.held[i], e]
     if not lu_factor(K, sizes, pivots):
         return -1
     for p in range(rows):
         a.push[p] = 0.0
         for e in range(n):
-            a.push[p, e] = a.G[first_row(mech, j), e] if p == 0 else a.W[mech.port.row[joint.port[j]], e]
+            a.push[p, e] = a.G[first_row(mech, j), e] if p == 0 else a.W[mech.port.row[mech.joint.port[j]], e]
         lu_solve(K, a.push[p, : n + m], sizes, pivots)
     return m
 
 
 @kernel
-def mobility(mech: Mech, a: Alone, j: int, p: int, q: int, n: int) -> float:
+def rate_by_impulse(mech: Mech, a: Alone, j: int, p: int, q: int, n: int) -> float:
     """Rate along row p by a unit impulse along row q."""
     value = 0.0
     for i in range(n):
@@ -219,13 +227,13 @@ def strike(mech: Mech, y: State, c: Control, a: Alone, j: int) -> int:
     a.rate[1] = rate_of(a.W, a.W0, mech.port.row[port], y.v) if rows == 2 else 0.0
     if not a.rate[0] < 0.0 or (rows == 2 and a.poisson != 0):
         return 0
-    m = answers(mech, y, a, j, rows)
+    m = answers_alone(mech, y, a, j, rows)
     if m < 0:
         return 0
     D = np.zeros((2, 2))
     for p in range(rows):
         for q in range(rows):
-            D[p, q] = mobility(mech, a, j, p, q, n)
+            D[p, q] = rate_by_impulse(mech, a, j, p, q, n)
     a.impulse[:] = 0.0
     if not D[0, 0] > 0.0:
         return 0
@@ -242,20 +250,15 @@ def strike(mech: Mech, y: State, c: Control, a: Alone, j: int) -> int:
 @kernel
 def bears_it(mech: Mech, a: Alone, m: int, rows: int, n: int) -> bool:
     """Whether nothing that only pushes would have to pull; dry ports that bear impulses are marked."""
-    joint, at, top = mech.joint, n, max(abs(a.impulse[0]), abs(a.impulse[1]))
-    for i in range(joint.port.shape[0] if m > 0 else 0):
-        for r in range(joint.row[i], joint.row[i + 1] if joint.hands_over[i] != RIGID else joint.row[i]):
-            if joint.dropped[r] != 0:
-                continue
-            reaction = 0.0
-            for p in range(rows):
-                reaction -= a.push[p, at] * a.impulse[p]
-            at += 1
-            if joint.one_sided[i] != 0 and reaction < -1e-9 * top:
-                return False
-            port = joint.port[i]
-            if port >= 0 and mech.port.normal[port] == NORMAL_REACTION and abs(reaction) > 0.0:
-                a.bears[port] = 1
+    top = max(abs(a.impulse[0]), abs(a.impulse[1]))
+    for i in range(m):
+        reaction, port = 0.0, mech.joint.port[a.of[i]]
+        for p in range(rows):
+            reaction -= a.push[p, n + i] * a.impulse[p]
+        if mech.joint.one_sided[a.of[i]] != 0 and reaction < -1e-9 * top:
+            return False
+        if port >= 0 and mech.port.normal[port] == NORMAL_REACTION and abs(reaction) > 0.0:
+            a.bears[port] = 1
     return True
 
 
@@ -301,7 +304,7 @@ def hit_alone(
     """The impact at y, into ``a.found``; False where it is not one of these, and nothing has been done."""
     rows_at(mech, k, y, a.v, a.G, a.G0, a.W, a.W0, a.gap, a.noise, a.normal, a.slip)
     j = lone_joint(mech, y, c, out, a)
-    if j < 0 or y.t - a.clock[2] <= 8.0 * EPS * abs(y.t):
+    if j < 0 or y.t - a.clock[2] <= INSTANT * abs(y.t):
         return False
     rows = strike(mech, y, c, a, j)
     if rows == 0:
@@ -347,7 +350,7 @@ def room_alone(problem: Problem, mechanism: Mechanism, bounces: Bounces, mu: Flo
     return room(Alone(
         int(mechanism.poisson), solid(joints.restitution, float), solid(joints.tangential, float), solid(mu, float),
         bounces.t, bounces.falls, bounces.count, bounces.times, bounces.clock, np.zeros(problem.n_c, np.int8),
-        np.zeros(problem.n_c, np.int8), np.zeros(5), np.zeros(n), np.zeros((m, n)), np.zeros(m), np.zeros((m_p, n)),
-        np.zeros(m_p), np.zeros(n_j), np.zeros(n_j), np.zeros(m), np.zeros(m_p), np.zeros(n_j),
-        np.zeros((2, n + m)), np.zeros(2), np.zeros(2), np.zeros(2),
+        np.zeros(problem.n_c, np.int8), np.zeros(m, np.int64), np.zeros(m, np.int64), np.zeros(5), np.zeros(n),
+        np.zeros((m, n)), np.zeros(m), np.zeros((m_p, n)), np.zeros(m_p), np.zeros(n_j), np.zeros(n_j), np.zeros(m),
+        np.zeros(m_p), np.zeros(n_j), np.zeros((2, n + m)), np.zeros(2), np.zeros(2), np.zeros(2),
     ))  # fmt: skip

@@ -28,6 +28,8 @@ CALM = 3e-3
 LOCATED = 16.0
 #: Time until a further contact is met, in those between the last two impacts, within which it comes to rest with them.
 NEXT = 10.0
+#: Impacts no further apart are at one instant, as a part of the time: roundings of a located one.
+INSTANT = 8.0 * EPS
 #: Height of a hop beside the round-off of distances, below which there is none.
 SEEN = 1e3
 #: Part of the last time between impacts to which a geometric series has to tell what is left.
@@ -106,7 +108,7 @@ class Bounces:
 
     def at_once(self, t: float) -> int:
         """An impact of any of them at t: how many there were at this instant before it."""
-        self.clock[3] = self.clock[3] + 1 if t - self.clock[2] <= 8.0 * EPS * abs(t) else 0
+        self.clock[3] = self.clock[3] + 1 if t - self.clock[2] <= INSTANT * abs(t) else 0
         self.clock[2] = t
         return int(self.clock[3])
 

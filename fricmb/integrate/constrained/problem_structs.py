@@ -159,9 +159,7 @@ def _pack(problem: Problem) -> Mech:
     joint = Joint(
         table, m.joints.row, load_of, n_x, m.joints.port, m.joints.one_sided, m.joints.hands_over, m.joints.dropped
     )
-    port_joint = np.full(problem.n_c, -1, np.int64)
-    for j in np.flatnonzero(m.joints.port >= 0):
-        port_joint[m.joints.port[j]] = j
+    port_joint = joints_of_ports(problem, m)
     solid = np.ascontiguousarray
     normal = solid(contacts.normal, np.int8)
     free = rows[load_of] == 0
@@ -209,10 +207,15 @@ def _softness(problem: Problem, m: Mechanism, port_joint: Ints) -> Floats:
 def leans_in_a_loop(problem: Problem) -> bool:
     """Whether a port whose cone at rest has its centre off 0 is in a loop with another one."""
     m = mechanism_of(problem)
-    port_joint = np.full(problem.n_c, -1, np.int64)
-    for j in np.flatnonzero(m.joints.port >= 0):
-        port_joint[m.joints.port[j]] = j
-    return bool((shares_a_loop(problem, m, port_joint) & (problem.contacts.lean != 0.0)).any())
+    return bool((shares_a_loop(problem, m, joints_of_ports(problem, m)) & (problem.contacts.lean != 0.0)).any())
+
+
+def joints_of_ports(problem: Problem, m: Mechanism) -> Ints:
+    """The joint of every port (n_c,), -1 for contacts."""
+    found = np.full(problem.n_c, -1, np.int64)
+    own = np.flatnonzero(m.joints.port >= 0)
+    found[m.joints.port[own]] = own
+    return found
 
 
 def masses(m: Mechanism) -> Floats:
