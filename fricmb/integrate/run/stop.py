@@ -31,6 +31,8 @@ class Watch:
         What was raised by a signal's handler (KeyboardInterrupt).
     reason : str or None
         Why the run was ended; None: it was not.
+    begun : bool
+        Whether the run has made steps, which are to be kept.
     """
 
     def __init__(
@@ -39,6 +41,7 @@ class Watch:
         self.limit = limit
         self.cause: BaseException | None = None
         self.reason: str | None = None
+        self.begun = False
         self._end = None if limit is None else (time.perf_counter() if since is None else since) + limit
         self._footprint = footprint
         self._stop: threading.Event | None = getattr(_local, "stop", None)
@@ -74,6 +77,8 @@ def in_slices(loop: Callable[..., int], *arguments: Any, tell: Callable[[], None
         with slicing():
             while ended() is None:
                 code = loop(*arguments)
+                if watch is not None:
+                    watch.begun = True
                 if code != SLICE_OVER:
                     return code
                 if tell is not None:
@@ -118,9 +123,12 @@ def _takes_interrupts() -> bool:
 
 
 def _note_interrupt(number: int, frame: Any) -> None:
-    """Ctrl-C during a run: between kernels, too, what was computed is kept.  A second one ends at once."""
+    """Ctrl-C during a run: between kernels, too, what was computed is kept.  A second one ends at once.
+
+    Before there is anything to keep, compiling ends at once; behind the first steps it is brought to its end.
+    """
     watch = present()
-    if watch is None or watch.cause is not None or global_compiler_lock.is_locked():
+    if watch is None or watch.cause is not None or (global_compiler_lock.is_locked() and not watch.begun):
         raise KeyboardInterrupt
     watch.interrupt(KeyboardInterrupt())
 
