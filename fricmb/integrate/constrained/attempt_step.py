@@ -246,6 +246,7 @@ def radau_step(
             copy_state(end, y)
         return FAIL_MARGIN
     worst = violated(mech, k, w, out, y, end, st)
+    whole = h
     if worst >= 0:
         h, worst = locate_trigger(mech, k, w, y, end, st, c, out, h, worst)
         if h == 0.0:
@@ -263,7 +264,9 @@ def radau_step(
     c.wanted = max(h, c.h)
     if worst < 0 and (h < left or factor < 1.0):
         c.wanted = h * min(5.0, max(0.3, factor))
-        c.h = next_step(c, h, c.wanted)
+        # a step up to where a polynomial had something vanish that does not: as short as that no further one need be
+        c.wanted = max(c.wanted, 0.3 * whole)
+        c.h = next_step(c, max(h, 0.3 * whole), c.wanted)
     if c.sets_out == 1:
         c.setting_out = c.wanted
         c.sets_out = 0

@@ -219,6 +219,9 @@ def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, share
             continue
         fine = is_slip(j, y) or is_open(mech, j - 2 * y.mode.shape[0])
         hair = 10.0 * grain(mech, out, j, y) if fine else ROUGH * size_of_force(mech, k, out, j, y)
+        if not fine:
+            # in a short step forces of stages are round-off of velocities over the step
+            hair += 2.0 * abs(out.trigger[j] - out.rough[j])
         for i in range(st.tab.c.shape[0]):
             out.values[i] = out.inner[i + 1, j] + hair
         # what begins at 0 rises from there, whatever the polynomial makes of its first moment
