@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.band import place_of
+from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.constrained.stages import Stages, stages_of
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
+from fricmb.integrate.constrained.stages import Stages, linearise, stages_of
 from fricmb.integrate.constrained.state import State, state_of
 from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.methods.backward_differences import Differences, begin_at
+from fricmb.integrate.methods.bdf_stability import BdfGuard, guard_of, no_guard, spectrum
 from fricmb.integrate.model.state import set_out
-from fricmb.integrate.problem import Floats, Problem, Start
+from fricmb.integrate.problem import Floats, Floats2, Problem, Start
 from fricmb.integrate.step.tableau import one_stage
 
 
@@ -21,7 +25,7 @@ class Formula(Layout):
 
     ``base`` holds psi: the step is one stage of length h/gamma from there, ``one``; ``made`` step of the factors,
     0: none that serve.  ``usual`` what the one-step method would step; ``origin``, ``reach`` (n,) where the run began
-    and the largest distance from there.
+    and the largest distance from there; ``guard`` which orders may be used.
     """
 
     base: State
@@ -30,19 +34,20 @@ class Formula(Layout):
     usual: float
     origin: Floats
     reach: Floats
+    guard: BdfGuard
 
 
-def formula_of(problem: Problem, start: Start) -> Formula:
+def formula_of(problem: Problem, start: Start, guard: BdfGuard) -> Formula:
     """Space for the steps of a run."""
     base, one = room(state_of(problem)), room(stages_of(problem, one_stage()))
     set_out(base, start)
     q = np.array(start.q, float)
-    return room(Formula(base, one, 0.0, 0.0, q, np.zeros_like(q)))
+    return room(Formula(base, one, 0.0, 0.0, q, np.zeros_like(q), room(guard)))
 
 
 def no_formula(base: State, one: Stages) -> Formula:
     """Of a run in which no step is one of BDF; ``base``, ``one``: any state and stages."""
-    return room(Formula(base, one, 0.0, 0.0, np.zeros(0), np.zeros(0)))
+    return room(Formula(base, one, 0.0, 0.0, np.zeros(0), np.zeros(0), room(no_guard())))
 
 
 def signals(problem: Problem) -> int:
@@ -78,3 +83,25 @@ def start_past(y: State, past: Differences, formula: Formula, h: float) -> None:
         past.D[1, 2 * n + i] = h * y.zd[i]
     begin_at(past, 1, h)
     formula.made = 0.0
+
+
+@entry
+def motion_layers(mech: Mech, k: Moving, y: State, st: Stages, M: Floats2, C: Floats2, K: Floats2) -> None:
+    """Masses, and slopes of the structure's forces by velocities and positions, at a state: (n, n) each."""
+    linearise(mech, k, y, st)
+    L, sizes, place = st.L, mech.order.sizes, mech.order.place
+    for i in range(M.shape[0]):
+        for j in range(M.shape[0]):
+            row, column = place[i], place[j]
+            if max(row, column) >= sizes[0] or abs(row - column) <= sizes[1]:
+                at = place_of(sizes, row, column)
+                M[i, j], C[i, j], K[i, j] = L.A0[at], L.A1[at], L.A2[at]
+
+
+def guard_at(problem: Problem, mech: Mech, k: Moving, y: State, st: Stages) -> BdfGuard:
+    """The guard by the spectrum at a state.  With joints there is none: motion is not that of the bodies alone."""
+    if problem.mechanism is not None:
+        return no_guard()
+    M, C, K = (np.zeros((problem.n, problem.n)) for _ in range(3))
+    motion_layers(mech, k, y, st, M, C, K)
+    return guard_of(spectrum(problem, M, C, K))

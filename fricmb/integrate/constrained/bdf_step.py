@@ -41,7 +41,7 @@ from fricmb.integrate.methods.backward_differences import (
     reject,
     rescale,
 )
-from fricmb.integrate.methods.bdf_stability import MAX_ORDER
+from fricmb.integrate.methods.bdf_stability import MAX_ORDER, admissible
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.outcomes import ACCEPTED, FAIL_SINGULAR, HANDOVER, REJECTED
 from fricmb.integrate.step.knots import IN_HISTORY
@@ -151,17 +151,25 @@ def update(past: Differences, formula: Formula) -> None:
 
 @kernel
 def select_order(y: State, c: Control, past: Differences, formula: Formula, error: float) -> None:
-    """After k + 1 equal steps: the order and step of the three candidates that goes fastest; steps stay on a ladder."""
-    k = past.order
+    """After k + 1 equal steps: the order and step of the three candidates that goes fastest; steps stay on a ladder.
+
+    A shorter step, or order 2, where an oscillation would grow until the end of the run.
+    """
+    k, left, guard = past.order, c.span[1] - y.t, formula.guard
     if past.equal <= k:
         return
     lower = higher = np.inf
     if k > 1:
         lower = scaled(y, c, past, formula, past.D[k], 1.0 / k)
-    if k < MAX_ORDER:
+    if k < MAX_ORDER and admissible(guard, k + 1, past.h, left):
         higher = scaled(y, c, past, formula, past.D[k + 2], 1.0 / (k + 2))
     best_k, best = best_order(k, lower, error, higher)
-    change_order(past, best_k, ladder(min(best, GROWTH, c.longest / past.h), BDF_RUNGS))
+    step = ladder(min(best, GROWTH, c.longest / past.h), BDF_RUNGS)
+    while step > 1.0 and not admissible(guard, best_k, past.h * step, left):
+        step = ladder(0.99 * step, BDF_RUNGS)
+    if not admissible(guard, best_k, past.h * step, left):
+        best_k = 2
+    change_order(past, best_k, step)
 
 
 @kernel

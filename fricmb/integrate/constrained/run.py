@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from fricmb.integrate.compile.parallel_compile import load_blocks
-from fricmb.integrate.constrained.bdf_history import Formula, formula_of, no_formula, signals
+from fricmb.integrate.constrained.bdf_history import Formula, formula_of, guard_at, no_formula, signals
 from fricmb.integrate.constrained.consistent_start import away, check_apart, consistent_start
 from fricmb.integrate.constrained.failure_text import failure_text, held_notes
 from fricmb.integrate.constrained.impact import Impacts
@@ -25,6 +25,7 @@ from fricmb.integrate.constrained.workspace import RunWorkspace, run_workspace
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.methods.backward_differences import Differences, differences, no_differences
+from fricmb.integrate.methods.bdf_stability import BdfGuard
 from fricmb.integrate.model.state import set_out
 from fricmb.integrate.problem import LAW_SMOOTH, Floats, Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
@@ -81,7 +82,10 @@ def run_mechanism(
         small, reach = _set_up(workspace, problem, start, t_end, tolerance)
         mech, record, part = mech_of(problem), record_of(problem, stages, capacity), np.zeros(problem.n_c, np.int8)
         k, w, y, end, before, st, out, control = workspace
-        past = _history(problem, start, t_end, stages) if multistep else (no_differences(), no_formula(y, st))
+        past: tuple[Differences, Formula] = no_differences(), no_formula(y, st)
+        if multistep:
+            load_blocks("multistep")
+            past = _history(problem, start, t_end, stages, guard_at(problem, mech, k, y, st))
         limits = steps_of_run(problem, start.t, t_end, tolerance)
         seen = limits.edge, limits.longest
         stepping: partial[int] = partial(
@@ -198,11 +202,12 @@ def _dropped_notes(m: Mechanism) -> tuple[str, ...]:
 COST = 3.3
 
 
-def _history(problem: Problem, start: Start, t_end: float, stages: int) -> tuple[Differences, Formula]:
-    """What BDF keeps of a run; its block is compiled for those who ask for it."""
-    load_blocks("multistep")
+def _history(
+    problem: Problem, start: Start, t_end: float, stages: int, guard: BdfGuard
+) -> tuple[Differences, Formula]:
+    """What BDF keeps of a run."""
     past = differences(signals(problem), t_end - start.t, COST * stages / 5)
-    return past, formula_of(problem, start)
+    return past, formula_of(problem, start, guard)
 
 
 #: Forces of inertia that are nothing but the round-off of others; those of a load that grows from 0 at the start, which

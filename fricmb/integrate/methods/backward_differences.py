@@ -81,8 +81,6 @@ def no_differences() -> Differences:
     return past
 
 
-#: Weights of an integral over the last step by backward differences (Adams-Moulton).
-ADAMS = (1.0, -1 / 2, -1 / 12, -1 / 24, -19 / 720, -3 / 160, -863 / 60480)
 #: Largest growth of a step: differences of old values are extrapolated, their round-off with them.
 GROWTH = 3.0
 

@@ -8,14 +8,11 @@ matters.  The spectrum of the scene says how fast, at a step size.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.room import room
-from fricmb.integrate.csr import Csr
-from fricmb.integrate.model.structure import Structure
+from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.problem import Floats, Floats2, Problem
 
 MAX_ORDER = 5
@@ -47,54 +44,49 @@ def growth_table() -> Floats:
     return table
 
 
-class BdfGuard(NamedTuple):
-    """What keeps BDF from growing on lightly damped oscillations, and from overlooking a transition.
+class BdfGuard(Layout):
+    """What keeps BDF from growing on lightly damped oscillations, as far as the spectrum of the scene tells.
 
-    ``growth`` table of :mod:`~fricmb.integrate.methods.bdf_stability`, ``omega`` and ``decay`` spectrum of the scene.
-    ``over`` (n_c+1,) how fast stuck forces came nearer to their limits in the last step, and its length.
+    ``growth`` table of :mod:`~fricmb.integrate.methods.bdf_stability`, ``omega`` and ``decay`` of the oscillations.
     """
 
     growth: Floats2
     omega: Floats
     decay: Floats
-    over: Floats
 
 
-def guard_of(problem: Problem, spectrum: tuple[Floats, Floats]) -> BdfGuard:
+def guard_of(spectrum: tuple[Floats, Floats]) -> BdfGuard:
     """Of a scene with frequencies and decay rates of the structure, ``spectrum``."""
     omega, decay = (np.ascontiguousarray(x, dtype=float) for x in spectrum)
-    return room(BdfGuard(growth_table(), omega, decay, np.zeros(problem.n_c + 1)))
+    return BdfGuard(growth_table(), omega, decay)
 
 
 @lru_cache(maxsize=1)
 def no_guard() -> BdfGuard:
-    """Of a run in which no step is one of BDF."""
-    return room(BdfGuard(np.zeros((0, 0)), np.zeros(0), np.zeros(0), np.zeros(0)))
+    """Of a run in which every order may be used."""
+    return BdfGuard(np.zeros((0, 0)), np.zeros(0), np.zeros(0))
 
 
 #: Structures of more degrees of freedom are not diagonalised for this.
 WHOLE = 256
 
 
-def spectrum(problem: Problem, structure: Structure, K: Floats, C: Floats) -> tuple[Floats, Floats]:
-    """Frequencies and decay rates of M x'' + C x' + K x = 0, without friction; K and C on the structure's pattern.
+def spectrum(problem: Problem, M: Floats2, C: Floats2, K: Floats2) -> tuple[Floats, Floats]:
+    """Frequencies and decay rates of M x'' + C x' + K x = 0, without friction.
 
     None where a stiffness has no value, as that of a root at 0: nothing oscillates about such a place.
     """
-    n = problem.n
     if not (np.isfinite(K).all() and np.isfinite(C).all()):
         return np.zeros(0), np.zeros(0)
-    if n > WHOLE:
-        if len(problem.omega) == n:
+    if problem.n > WHOLE:
+        if len(problem.omega) == problem.n:
             return problem.omega, problem.omega * problem.zeta
         # a bound: any frequency up to it may be there
-        top = np.sqrt(structure.mobility.max() * np.bincount(structure.column, np.abs(K), n).max())
+        top = np.sqrt((np.abs(K).sum(1) / np.diag(M)).max())
         return np.concatenate([[0.0], top * np.geomspace(1e-4, 1.0, 256)]), np.zeros(257)
-    inverse = Csr((n, n), structure.Minv_start, structure.Minv_index, structure.Minv).dense()
-    whole_K, whole_C = (Csr((n, n), structure.first, structure.column, part).dense() for part in (K, C))
-    values, shapes = np.linalg.eig(inverse @ whole_K)
+    values, shapes = np.linalg.eig(np.linalg.solve(M, K))
     try:
-        damping = np.real(np.diag(np.linalg.solve(shapes, inverse @ whole_C @ shapes)))
+        damping = np.real(np.diag(np.linalg.solve(shapes, np.linalg.solve(M, C) @ shapes)))
     except np.linalg.LinAlgError:
         damping = np.zeros(len(values))
     return np.sqrt(np.maximum(values.real, 0.0)), 0.5 * np.maximum(damping, 0.0)

@@ -7,7 +7,7 @@ from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.problem import Problem
 from fricmb.integrate.step import band_matrix
-from fricmb.integrate.step.bends_without_joints import bend_ahead, bends_in_step
+from fricmb.integrate.step.bends_without_joints import bend_ahead
 
 #: Whatever the steps are.
 CORE = (
@@ -35,5 +35,5 @@ def load_stages(problem: Problem, *further: str) -> None:
 def where_it_bends(problem: Problem) -> tuple[str, ...]:
     """What a run takes where laws or elements bend."""
     laws = ("next_knot", "off_beside_knots") if problem.contacts.knots.size else ()
-    elements = (bend_ahead.__name__, bends_in_step.__name__) if problem.bends.table.address.size else ()
+    elements = (bend_ahead.__name__,) if problem.bends.table.address.size else ()
     return laws + elements

@@ -8,8 +8,6 @@ from functools import partial
 from typing import ClassVar
 
 from fricmb.integrate.integrator import Integrator, Tolerance
-from fricmb.integrate.methods.backward_differences import no_differences
-from fricmb.integrate.methods.bdf_stability import no_guard
 from fricmb.integrate.methods.blocks_of_run import load_stages
 from fricmb.integrate.methods.run_setup import Collector, run_loop, set_accuracy
 from fricmb.integrate.methods.run_workspace import run_workspace, step_workspace
@@ -84,6 +82,5 @@ def run_one_step(
 def one_step_loop(run: Collector, one: OneStep) -> Callable[[], int]:
     """The loop over the steps of one formula."""
     return partial(
-        drive, run.packed, run.scratch, run.y, run.end, one, one, run.acc, no_differences(), no_guard(), run.rest,
-        run.old, run.rows, run.clock, *run.seen,
+        drive, run.packed, run.scratch, run.y, run.end, one, run.acc, run.rest, run.old, run.rows, run.clock, *run.seen,
     )  # fmt: skip

@@ -20,25 +20,20 @@ FEW = 16
 
 
 def in_a_band(problem: Problem, stages: int | None) -> bool:
-    """Whether ``radau`` solves steps for all unknowns in a band: with joints, and nearly everything without.
+    """Whether ``radau`` and ``bdf`` solve steps for all unknowns in a band: with joints, and nearly all without.
 
     Condensed to the contacts are steps of an even number of stages, and, with few contacts, those of scenes with
     elements whose forces bend or jump: that what rests lets go at a jump is known to condensed steps alone.
     """
-    if problem.mechanism is None and stages is not None and stages % 2 == 0:
-        return False
-    return not problem.bends.table.address.size or bdf_in_a_band(problem, stages)
-
-
-def bdf_in_a_band(problem: Problem, stages: int | None) -> bool:
-    """Whether ``bdf`` does: with joints or bodies that turn, and with many contacts."""
     if problem.mechanism is not None:
         return True
-    if problem.m + problem.n_v < FEW or (stages is not None and stages % 2 == 0):
+    if stages is not None and stages % 2 == 0:
         return False
+    if not problem.bends.table.address.size:
+        return True
     from fricmb.integrate.constrained import has_many_rows
 
-    return has_many_rows(problem)
+    return problem.m + problem.n_v >= FEW and has_many_rows(problem)
 
 
 def stopped_in_a_band(problem: Problem, run: Trajectory) -> bool:

@@ -146,15 +146,6 @@ def _is_lines(given: Input) -> bool:
     return alone and all(table.degree <= 1 for table in given.tables)
 
 
-def cost(problem: Problem, stages: int) -> float:
-    """Cost of a step of so many stages, about in microseconds (measured; only ratios are used)."""
-    u = stages * (problem.m + problem.n_z + problem.n_v)
-    ports = 0.02 * u**2 + 0.0005 * u**3
-    if packed_of(problem).structure.half >= 0:  # vectors count, not matrices
-        return 1.5 + 0.1 * (stages + 1.5) * problem.n + ports
-    return 1.5 + 0.5 * stages + 0.002 * stages * problem.n**2 + ports
-
-
 def run_loop(
     run: Collector, code: int, step: Callable[[], int], memory: float | None,
     progress: Callable[[float], None] | None,

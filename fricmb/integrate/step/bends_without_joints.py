@@ -12,8 +12,7 @@ from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Codes, Floats, Floats2
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.element_bends import ASKED, first_bend, look, put_signs, where_turned
-from fricmb.integrate.step.knots import AT_AN_END, IN_HISTORY, NEAR, NOWHERE, SLIGHT
-from fricmb.integrate.step.law_defect import ROUND_OFF
+from fricmb.integrate.step.knots import AT_AN_END, NEAR, NOWHERE, SLIGHT
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
 from fricmb.integrate.step.stages import Stages
 from fricmb.integrate.step.weigh_forces import felt_speed, pushed
@@ -136,33 +135,3 @@ def bend_ahead(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy
         place, forces_at, felt_by, packed, s, s, one.tab, y, one.st, acc, SLIGHT * acc.rtol, h, signs, line, state
     )
     return before_bend(packed, s, y, one, x, low, h, signs, line, state) if x < 1.0 else NOWHERE
-
-
-@block
-def bends_in_step(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy) -> bool:
-    """Whether forces bend between y and ``end``, a step of BDF, by enough to matter."""
-    n, count = y.q.shape[0], packed.bend_start[packed.bend_start.shape[0] - 1]
-    signs, state = np.empty((2, count)), np.empty((2, n))
-    f = np.empty((3, n + y.mode.shape[0]))
-    set_instant(packed.signals, s, y.t, y.q, y.v)
-    put_signs(packed.bends, packed.bend_start, s, signs[0])
-    forces_at(packed, s, n, y.mode, f[0])
-    set_instant(packed.signals, s, end.t, end.q, end.v)
-    put_signs(packed.bends, packed.bend_start, s, signs[1])
-    forces_at(packed, s, n, y.mode, f[1])
-    h, allowed, free = end.t - y.t, IN_HISTORY * acc.rtol, np.empty(f.shape[1])
-    felt_by(packed, s, y, one.st, acc, h, free)
-    for b in range(count):
-        if (signs[0, b] < 0.0) == (signs[1, b] < 0.0):
-            continue
-        x = signs[0, b] / (signs[0, b] - signs[1, b])
-        for i in range(n):
-            state[0, i] = y.q[i] + x * (end.q[i] - y.q[i])
-            state[1, i] = y.v[i] + x * (end.v[i] - y.v[i])
-        set_instant(packed.signals, s, y.t + x * h, state[0], state[1])
-        forces_at(packed, s, n, y.mode, f[2])
-        for i in range(f.shape[1]):
-            off = abs(f[2, i] - f[0, i] - x * (f[1, i] - f[0, i])) - ROUND_OFF * max(abs(f[0, i]), abs(f[1, i]))
-            if h * off * free[i] > allowed:
-                return True
-    return False

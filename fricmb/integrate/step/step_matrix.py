@@ -118,13 +118,6 @@ def jacobians(packed: Packed, s: Scratch, fac: Factor) -> None:
             normal_gradient(packed.normals, k, s, fac.Nq[a], fac.Nv[a])
 
 
-@kernel
-def forget(fac: Factor) -> None:
-    """Let the Jacobian be made anew before the next step."""
-    fac.made[:] = 0.0
-    fac.filled = 0
-
-
 @declared
 def factorise_band(packed: Packed, tab: Tableau, h: float, fac: Factor, w: PortState) -> bool:
     """:func:`factorise` of a narrow structure; see ``band_matrix``."""
