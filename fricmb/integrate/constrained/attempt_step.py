@@ -31,6 +31,7 @@ from fricmb.integrate.constrained.radau_step import (
     error_of,
     has_joints,
     remember,
+    takes_slopes,
     try_step,
 )
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
@@ -53,7 +54,6 @@ from fricmb.integrate.run.outcomes import (
     ACCEPTED,
     CHANGED,
     DONE,
-    FAIL_CREEP,
     FAIL_MARGIN,
     FAIL_SINGULAR,
     FAIL_STEP,
@@ -168,20 +168,6 @@ def may_keep(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) 
     return same
 
 
-#: Steps whose equations were not solved, and their part of those that were accepted, from which on a run creeps.
-VAIN, VAIN_PART = 200, 0.25
-
-
-@kernel
-def creeps(c: Control, y: State) -> bool:
-    """Whether a scene without joints is to be left to steps that are condensed to the contacts.
-
-    Those solve with the slopes of laws at every stage: of a law that is steep as a logarithm near rest there is no one
-    slope for a whole step.
-    """
-    return bool(not has_joints(y) and c.counts[5] > VAIN and c.counts[5] > VAIN_PART * c.counts[0])
-
-
 @block
 def radau_step(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
@@ -212,7 +198,7 @@ def radau_step(
         # forces of a step that is short beside round-off are no start for a shorter one: what is known at y is
         c.last_h = 0.0
         c.counts[5] += 1
-        return FAIL_CREEP if creeps(c, y) else reject(c, 0.4 * h)
+        return reject(c, h if takes_slopes(c, st) else 0.4 * h)
     bring_up_to_date(mech, k, y, st, h)
     find_kinks(mech, k, y, st, out)
     weigh_ports(mech, k, y, st, c, h)

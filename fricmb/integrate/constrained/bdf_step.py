@@ -21,7 +21,15 @@ from fricmb.integrate.constrained.force_jumps import jump_error
 from fricmb.integrate.constrained.load_kinks import find_kinks
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.radau_step import Control, last_stage, measure, measure_states, settle, state_noise
+from fricmb.integrate.constrained.radau_step import (
+    Control,
+    has_joints,
+    last_stage,
+    measure,
+    measure_states,
+    settle,
+    state_noise,
+)
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
 from fricmb.integrate.constrained.singular_position import may_have_passed, near_singular, way_left
 from fricmb.integrate.constrained.slip_rows import keep_held
@@ -33,6 +41,7 @@ from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.methods.backward_differences import (
     GROWTH,
     Differences,
+    allowed,
     best_order,
     bring_forward,
     change_order,
@@ -43,6 +52,7 @@ from fricmb.integrate.methods.backward_differences import (
 )
 from fricmb.integrate.methods.bdf_stability import MAX_ORDER, admissible
 from fricmb.integrate.problem import Floats
+from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.outcomes import ACCEPTED, FAIL_SINGULAR, HANDOVER, REJECTED
 from fricmb.integrate.step.knots import IN_HISTORY
 from fricmb.integrate.step.slip_growth import too_long
@@ -54,6 +64,8 @@ NEWTON = 0.03
 LEAST = 1e-6
 #: Loosest tolerance of a step: reactions follow from accelerations, which a rougher step gives the wrong sign.
 LOOSEST = 1e-3
+#: Roundings of a position that differences of a few of them, and its correction, may be off by.
+ROUNDINGS = 16.0
 #: Rate of convergence at which the Jacobian is made anew.
 SLOW = 0.2
 
@@ -69,8 +81,14 @@ def take(values: Floats, y: State, rate: Floats) -> None:
 
 
 @kernel
-def share_of(c: Control, past: Differences) -> float:
-    """What of the error this step may make: in proportion to its length, but for the few short steps of a start."""
+def share_of(y: State, c: Control, past: Differences) -> float:
+    """What of the error this step may make: in proportion to its length.
+
+    With joints but for the few short steps of a start, and no less for errors that add up: reactions follow from
+    accelerations, which are far rougher.
+    """
+    if not has_joints(y):
+        return allowed(c.rtol, past)
     return float(max(min(c.rtol, LOOSEST) * min(1.0, max(past.h * past.unit, 0.01)), c.blur, 4e-15))
 
 
@@ -91,7 +109,7 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
     base.t = y.t + h - beta_h
     measure(mech, c, y, h, one.scale)
     measure_states(c, y, h, one)
-    accuracy = max(NEWTON * share_of(c, past), 1e-13)
+    accuracy = max(NEWTON * share_of(y, c, past), 1e-13)
     for _ in range(2):
         copy_state(y, end)
         take(past.guess, end, end.rate)
@@ -126,13 +144,14 @@ def solve_formula(mech: Mech, k: Moving, y: State, end: State, c: Control, past:
 def scaled(y: State, c: Control, past: Differences, formula: Formula, error: Floats, weight: float) -> float:
     """Largest of weight * error by signal against rtol and the share of it that this step may use.
 
-    Positions count against the way that the run has gone: they may lie anywhere.
+    Positions count against the way that the run has gone: they may lie anywhere, but for their round-off.
     """
     n = y.q.shape[0]
     worst = 0.0
-    share = share_of(c, past)
+    share = share_of(y, c, past)
     for i in range(n):
         size = max(formula.reach[i], abs(past.new[i] - formula.origin[i]), past.h * formula.one.scale[i], 1e-290)
+        size = max(size, ROUNDINGS * EPS * c.q[i] / share)
         worst = max(worst, abs(error[n + i]) / formula.one.scale[i], abs(error[i]) / size)
     for i in range(y.z.shape[0]):
         worst = max(worst, abs(error[2 * n + i]) / max(c.z[i], abs(past.new[2 * n + i]), c.noise_z[i], 1e-290))

@@ -11,6 +11,7 @@ from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import SLIGHT, lightness, plane
 from fricmb.integrate.constrained.stages import Stages, solve_system
 from fricmb.integrate.constrained.state import State
+from fricmb.integrate.constrained.steep_laws import set_gain
 from fricmb.integrate.constrained.turning import NEAR, NEAR_WITHOUT, Turns, across, by_turn, force_place
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import SLIP
@@ -99,3 +100,15 @@ def prepare_turns(mech: Mech, st: Stages) -> None:
                 for j in range(s):
                     for p in range(s):
                         turns.gain[q * s + j, k * s + p] += (tab.T[j, i] * tab.Tinv[i, p] * turn).real
+
+
+@kernel
+def prepare_steep(mech: Mech, st: Stages) -> None:
+    """Solve for what the rows of steep laws answer; the factors are there."""
+    steep = st.steep
+    for a in range(steep.row.shape[0] if steep.on == 1 else 0):
+        for i in range(st.tab.lam.shape[0]):
+            st.w[i, :] = 0.0
+            st.w[i, steep.row[a]] = 1.0
+            solve_system(mech, st, i, False)
+            set_gain(mech, steep, st.tab, a, i, st.w[i])

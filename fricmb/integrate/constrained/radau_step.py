@@ -10,7 +10,7 @@ from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.constrained.accelerations import powers, react
 from fricmb.integrate.constrained.forces import forces, forces_on_signals, move
 from fricmb.integrate.constrained.moving import Moving
-from fricmb.integrate.constrained.near_rest import choose_forms, prepare_turns
+from fricmb.integrate.constrained.near_rest import choose_forms, prepare_steep, prepare_turns
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_positions, project_velocities
 from fricmb.integrate.constrained.slip_rows import aim, keep_held, lightness
@@ -206,6 +206,7 @@ def solve_stages(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: flo
                 return False
         c.made = st.lengths[st.slot]
         prepare_turns(mech, st)
+        prepare_steep(mech, st)
     measure(mech, c, y, h, st.scale)
     measure_states(c, y, h, st)
     predict_stages(c, y, st, h)
@@ -227,6 +228,22 @@ def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) 
         return False
     c.made = 0.0
     return bool(solve_stages(mech, k, y, st, c, h))
+
+
+#: Steps that have not been solved, and their part of those accepted, from which on slopes of laws are those of stages.
+VAIN, VAIN_PART = 4, 0.02
+
+
+@kernel
+def takes_slopes(c: Control, st: Stages) -> bool:
+    """Whether steps have so often not been solved that slopes of smooth laws are to be those of every stage."""
+    steep = st.steep
+    few = c.counts[5] < VAIN or c.counts[5] < VAIN_PART * c.counts[0]
+    if few or steep.on == 1 or steep.row.shape[0] == 0:
+        return False
+    steep.on = 1
+    c.made = 0.0
+    return True
 
 
 @kernel

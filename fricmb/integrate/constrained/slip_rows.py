@@ -178,6 +178,26 @@ def lightness(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, mass: 
 
 
 @kernel
+def slip_gradient(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, out: Floats) -> None:
+    """Derivatives of the slip velocity of port c in a direction by all velocities, into out (n,)."""
+    port, place, j = mech.port, mech.place, mech.port.joint[c]
+    table, first, n_x, at = port.slip, port.slip.x_start[c] + 2 * direction, 1, 0
+    if j >= 0:
+        n_x = call_joint(mech, k, j, lam)
+        table, first = mech.joint.table, mech.joint.table.x_start[j]
+        at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j]) + direction * n_x
+    out[:] = 0.0
+    for form in range(first, first + n_x):
+        factor = k.out[at + form - first] if j >= 0 else 1.0
+        for i in range(table.form_start[form], table.form_start[form + 1]):
+            e = table.form_index[i] - 1
+            if not 0 <= e < k.ddy.shape[0]:
+                continue
+            for b in range(place.y_start[e], place.y_start[e + 1]):
+                out[place.y_dof[b]] += factor * table.form_coefficient[i] * place_slope(place, k, b)
+
+
+@kernel
 def guided(mech: Mech, c: int, direction: int) -> bool:
     """Whether no force of contact c moves anything in a direction: a guide bears it."""
     table = mech.port.slip

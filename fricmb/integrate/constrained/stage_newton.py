@@ -15,6 +15,7 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.stages import Stages, accelerations_at, solve_system, stage_positions, stage_residual
 from fricmb.integrate.constrained.state import State
+from fricmb.integrate.constrained.steep_laws import correct_slopes, part_of_change, slopes_at_stages
 from fricmb.integrate.constrained.turning import correct_turns, spread_of_stages
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, SLIP
 
@@ -75,6 +76,8 @@ def friction_alone(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> Non
 
 #: Newton's iterations in a step before it is given up.
 ITERATIONS = 12
+#: The same where changes are cut lest slip under a steep law turn round.
+STEEP_ITERATIONS = 40
 #: Part of the accuracy that factors may leave of the motion's rows while further iterations are of friction alone.
 SOLVED = 0.1
 #: Part by which a change of a state counts beside one of a velocity, where an iteration is of the whole structure: most
@@ -167,7 +170,8 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, made: 
     left = left_by_factors(mech, h, made)
     exact = left if is_linear(mech, y) else 1.0
     st.found, st.fresh = 1.0, 0
-    for iteration in range(ITERATIONS):
+    for iteration in range(ITERATIONS if st.steep.on == 0 else STEEP_ITERATIONS):
+        part = 1.0
         alone = st.plain == 1 and unsolved <= SOLVED * accuracy
         if alone:
             friction_alone(mech, k, y, st, h)
@@ -179,18 +183,27 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, made: 
         newton_change(mech, st, alone)
         if st.turns.near > 0:
             correct_turns(mech, st.turns, tab, st.R, st.w)
+        if st.steep.on == 1:
+            slopes_at_stages(mech, k, st.steep, y.mode, st.g, st.z, st.N)
+            correct_slopes(mech, st.steep, tab, st.R, st.w)
+            part = part_of_change(mech, st.steep, st.R, st.g)
+            if part < 1.0:
+                st.R[:] *= part
         change = apply_change(st)
         if not change < 1e30:
             return 0
+        if part < 1.0:
+            unsolved, last = np.inf, np.inf
+            continue
         if not alone:
             unsolved = left * change
-        rate = change / last if iteration > 0 else exact
-        if iteration > 0 or exact < 1.0:
+        rate = change / last if last < np.inf else exact
+        if last < np.inf or exact < 1.0:
             st.found = rate
         if change <= 1e-15 or (rate < 1.0 and change * rate / (1.0 - rate) <= accuracy):
             end_iteration(mech, y, st, h, change <= accuracy)
             return iteration + 1
-        if iteration > 0 and (rate >= 2.0 or (iteration > 2 and rate >= 0.95)):
+        if last < np.inf and (rate >= 2.0 or (iteration > 2 and rate >= 0.95)):
             if not is_noise(mech, st):
                 return 0
             end_iteration(mech, y, st, h, False)

@@ -22,6 +22,7 @@ from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_contac
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech, mech_of
 from fricmb.integrate.constrained.state import State
+from fricmb.integrate.constrained.steep_laws import Steep, set_base, steep_laws_of
 from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.constrained.turning import Turns, turns_of
 from fricmb.integrate.problem import (
@@ -45,9 +46,9 @@ class Stages(Layout):
     (slots, l, .); those in use are of ``slot``.
 
     ``Ainv`` (s, s) inverse of the tableau; ``scale`` (n,) what counts as 1 in velocities; ``found`` the rate of
-    convergence; ``turns`` for contacts in two directions; ``felt`` what forces of ports do in the step just solved;
-    ``fresh`` 1 where N and g are those of the values there, but for a change that is nothing; ``plain`` 1 where
-    friction alone is not linear, and its loads are given.
+    convergence; ``turns`` for contacts in two directions; ``steep`` for smooth laws; ``felt`` what forces of
+    ports do in the step just solved; ``fresh`` 1 where N and g are those of the values there, but for a change that is
+    nothing; ``plain`` 1 where friction alone is not linear, and its loads are given.
     """
 
     tab: Tableau
@@ -74,6 +75,7 @@ class Stages(Layout):
     scale: Floats
     found: float
     turns: Turns
+    steep: Steep
     felt: Felt
     fresh: int
     plain: int
@@ -98,7 +100,8 @@ def stages_of(problem: Problem, tab: Tableau) -> Stages:
         np.zeros((slots, count, band), complex), np.zeros(slots * count * size, np.int32), np.zeros(slots), 0,
         np.zeros(size),
         np.zeros((count, size), complex), np.zeros(size, complex), np.zeros((s, nz)), np.zeros(size), np.ones(m.n), 0.0,
-        turns_of(problem, tab, size), felt_of(problem, s), 0, int(is_plain(problem)),
+        turns_of(problem, tab, size), steep_laws_of(problem, tab, m.n, size), felt_of(problem, s), 0,
+        int(is_plain(problem)),
     )  # fmt: skip
 
 
@@ -129,6 +132,7 @@ def linearise(mech: Mech, k: Moving, y: State, st: Stages) -> None:
     size = mech.order.place.shape[0]
     for i in range(size - y.z.shape[0], size):
         add(mech.order, L.A0, i, i, 1.0)
+    set_base(mech, k, st.steep, y.mode, y.g, y.z, y.N, y.lam)
 
 
 @kernel

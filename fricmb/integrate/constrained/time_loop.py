@@ -9,6 +9,7 @@ from fricmb.integrate.constrained.accelerations import react
 from fricmb.integrate.constrained.attempt_step import arrive, grow, radau_step
 from fricmb.integrate.constrained.bdf_history import Formula, start_past
 from fricmb.integrate.constrained.bdf_step import multistep
+from fricmb.integrate.constrained.between_stages import growth_of_slip
 from fricmb.integrate.constrained.event_functions import triggers
 from fricmb.integrate.constrained.load_kinks import mark_bends
 from fricmb.integrate.constrained.mode_decision import decide, mark_rest
@@ -42,6 +43,10 @@ from fricmb.integrate.run.outcomes import (
 )
 from fricmb.integrate.run.slices import slice_over, ticks
 from fricmb.integrate.signals.longest_steps import OF_BDF, kink_from, longest_from
+
+#: Steps of the one-step method, in times by which slip grows e-fold, from which on BDF does not begin: what the short
+#: steps of its start err by would grow with the slip.
+GROWING = 0.1
 
 
 @run_entry
@@ -138,7 +143,7 @@ def drive(
             t = y.t
             code = radau_step(mech, k, w, y, end, before, st, c, out, rec, part, goal)
             h = y.t - t
-            if may_begin(past, code) and h > 0.0:
+            if may_begin(past, code) and h > 0.0 and growth_of_slip(mech, k, y, st, h) <= GROWING:
                 formula.usual = max(h, c.wanted)
                 start_past(y, past, formula, min(0.1 * h, past.good if past.good > 0.0 else h))
         if code > FULL:
