@@ -54,6 +54,7 @@ from fricmb.integrate.run.outcomes import (
     ACCEPTED,
     CHANGED,
     DONE,
+    FAIL_CREEP,
     FAIL_MARGIN,
     FAIL_SINGULAR,
     FAIL_STEP,
@@ -168,6 +169,18 @@ def may_keep(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) 
     return same
 
 
+#: Part of a step that is nothing beside it.
+IN_VAIN = 1e-6
+#: Steps whose equations were not solved, and their part of those that were accepted, from which on a run creeps.
+VAIN, VAIN_PART = 200, 0.25
+
+
+@kernel
+def creeps(c: Control, y: State) -> bool:
+    """Whether a scene without joints is to be left to steps that are condensed to the contacts."""
+    return bool(not has_joints(y) and c.counts[5] > VAIN and c.counts[5] > VAIN_PART * c.counts[0])
+
+
 @block
 def radau_step(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
@@ -198,6 +211,8 @@ def radau_step(
         # forces of a step that is short beside round-off are no start for a shorter one: what is known at y is
         c.last_h = 0.0
         c.counts[5] += 1
+        if creeps(c, y):
+            return FAIL_CREEP
         return reject(c, h if takes_slopes(c, st) else 0.4 * h)
     bring_up_to_date(mech, k, y, st, h)
     find_kinks(mech, k, y, st, out)
@@ -250,9 +265,11 @@ def radau_step(
     c.wanted = max(h, c.h)
     if worst < 0 and (h < left or factor < 1.0):
         c.wanted = h * min(5.0, max(0.3, factor))
-        # a step up to where a polynomial had something vanish that does not: as short as that no further one need be
-        c.wanted = max(c.wanted, 0.3 * whole)
-        c.h = next_step(c, max(h, 0.3 * whole), c.wanted)
+        taken = h
+        if h < IN_VAIN * whole:
+            # cut where a polynomial had something vanish at once that does not: the next one need not be as short
+            taken = c.wanted = 0.3 * whole
+        c.h = next_step(c, taken, c.wanted)
     if c.sets_out == 1:
         c.setting_out = c.wanted
         c.sets_out = 0

@@ -21,7 +21,7 @@ class Differences(Layout):
     ``order``; steps since it or the step changed, ``equal``; whether BDF is ``on``; ``rejections`` in a row; steps of
     the one-step method to ``wait`` for before BDF is tried again, the last such wait, ``waited``, and the last one
     because BDF was the slower of the two, ``slower``; steps ``since`` its start. ``good`` last accepted step. ``new``,
-    ``guess``, ``lag``, ``d`` (n_y,) values, prediction, psi without it, and correction of a step. ``gamma`` (7,) sums
+    ``guess``, ``d`` (n_y,) values, prediction, and correction of a step. ``gamma`` (7,) sums
     1 + 1/2 + ...;  ``unit`` hundredths of the run per unit of time, see ``allowed``; ``cost`` of a one-step step in BDF
     steps. ``U``, ``E``, ``column`` space for rescaling.
     """
@@ -39,7 +39,6 @@ class Differences(Layout):
     good: float
     new: Floats
     guess: Floats
-    lag: Floats
     d: Floats
     gamma: Floats
     unit: float
@@ -60,7 +59,6 @@ def differences(n_y: int, span: float, cost: float) -> Differences:
             good=0.0,
             new=signal,
             guess=signal.copy(),
-            lag=signal.copy(),
             d=signal.copy(),
             gamma=np.concatenate([[0.0], np.cumsum(1.0 / np.arange(1, 7))]),
             # a hundredth of the error is spent on a hundredth of the run
@@ -99,7 +97,7 @@ def allowed(rtol: float, past: Differences) -> float:
 
 @kernel
 def predict(past: Differences) -> None:
-    """Prediction, and psi (into ``new``; ``lag``: psi without the prediction)."""
+    """Prediction, and psi (into ``new``)."""
     k = past.order
     for i in range(past.guess.shape[0]):
         guess = past.D[0, i]
@@ -108,8 +106,7 @@ def predict(past: Differences) -> None:
             guess += past.D[j, i]
             psi += past.gamma[j] * past.D[j, i]
         past.guess[i] = guess
-        past.lag[i] = -psi / past.gamma[k]
-        past.new[i] = guess + past.lag[i]
+        past.new[i] = guess - psi / past.gamma[k]
 
 
 @kernel
