@@ -47,7 +47,9 @@ def test_slip_that_has_only_begun_is_no_negative_friction():
     """Between two rows of a coarse run the slip speed may show the wrong sign, within the tolerance."""
     case = next(case for case in SCENES if case.name == "two_blocks")
     sol = fm.simulate(case.build(), t_end=case.t_end, t_eval=case.reference().t, rtol=1e-3, method="bdf")
-    assert len(sol.events) == 41
+    told = [e.kind for e in sol.events]
+    assert (told.count("stick"), told.count("slip")) == (20, 20)
+    assert told.count("reversal") in (1, 3)  # one, and at this tolerance a pair that a finer run has not
 
 
 @pytest.mark.parametrize(("method", "rtol"), [("radau", 1e-4), ("bdf", 1e-6), ("collocation", 1e-6)])

@@ -94,16 +94,18 @@ KAPPA, FINEST = 1e-3, 1e-14
 def measure(mech: Mech, c: Control, y: State, h: float, scale: Floats) -> None:
     """What counts as 1 in velocities: running maxima, not less than a trifle of what kinetic energy could bring.
 
-    That of what a body is tied to: an idle rotor makes no other body's motion a trifle.
+    That of what a body is tied to: an idle rotor makes no other body's motion a trifle.  With joints reactions follow
+    from accelerations, which no smaller trifle would leave rough.
     """
     energy, group = c.inertia, mech.group
+    trifle = 1e-4 if has_joints(y) else 1e-7
     energy[:] = 0.0
     for i in range(scale.shape[0]):
         here = max(c.v[i], abs(y.v[i]) + h * abs(y.a[i]))
         energy[group[i]] = max(energy[group[i]], c.mass[i] * here * here)
     for i in range(scale.shape[0]):
         here = max(c.v[i], abs(y.v[i]) + h * abs(y.a[i]), c.floor_v[i])
-        scale[i] = max(here, 1e-4 * np.sqrt(energy[group[i]] / c.mass[i]), 1e-290)
+        scale[i] = max(here, trifle * np.sqrt(energy[group[i]] / c.mass[i]), 1e-290)
     linear = mech.linear
     for e in range(linear.K.shape[0]):
         i, j = linear.Ki[e], linear.Kj[e]

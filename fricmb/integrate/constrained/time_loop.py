@@ -47,6 +47,9 @@ from fricmb.integrate.signals.longest_steps import OF_BDF, kink_from, longest_fr
 #: Steps of the one-step method, in times by which slip grows e-fold, from which on BDF does not begin: what the short
 #: steps of its start err by would grow with the slip.
 GROWING = 0.1
+#: Times its step that the one-step method may want for the next one where BDF begins: one that was cut short says
+#: nothing of what BDF has to get by.
+NATURAL = 2.0
 
 
 @run_entry
@@ -143,7 +146,8 @@ def drive(
             t = y.t
             code = radau_step(mech, k, w, y, end, before, st, c, out, rec, part, goal)
             h = y.t - t
-            if may_begin(past, code) and h > 0.0 and growth_of_slip(mech, k, y, st, h) <= GROWING:
+            found = may_begin(past, code) and h > 0.0 and c.wanted <= NATURAL * h
+            if found and growth_of_slip(mech, k, y, st, h) <= GROWING:
                 formula.usual = max(h, c.wanted)
                 start_past(y, past, formula, min(0.1 * h, past.good if past.good > 0.0 else h))
         if code > FULL:
