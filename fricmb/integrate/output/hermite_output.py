@@ -20,8 +20,8 @@ from fricmb.integrate.run.breakpoints import set_window_around
 def hermite(left: Floats, right: Floats, h: float, x: float, n: int, q: Floats, v: Floats) -> None:
     """Q and v at fraction x of a step h from rows that hold [t, q, v, a].
 
-    The mean velocity (q1 - q0)/h has the round-off of the two times over h: where the velocities of both ends and their
-    rates say the same but for that, they are taken.
+    The mean velocity (q1 - q0)/h has the round-off of times and positions over h: where the velocities of both ends and
+    their rates say the same but for that, they are taken.
     """
     grain = 2e-15 * max(abs(left[0]), abs(right[0])) / h
     x2, x3 = x * x, x * x * x
@@ -42,7 +42,7 @@ def hermite(left: Floats, right: Floats, h: float, x: float, n: int, q: Floats, 
         q[i] = q0 + b1 * (q1 - q0) + h * (s0 * v0 + s1 * v1) + h * h * (c0 * a0 + c1 * a1)
         v[i] = d1 * (q1 - q0) / h + e0 * v0 + e1 * v1 + h * (f0 * a0 + f1 * a1)
         alone = v0 + (3.0 * x2 - 2.0 * x3) * (v1 - v0) + h * ((x - 2.0 * x2 + x3) * a0 + (x3 - x2) * a1)
-        if abs(v[i] - alone) <= grain * max(abs(v0), abs(v1)):
+        if abs(v[i] - alone) <= grain * max(abs(v0), abs(v1)) + 1e-15 * max(abs(q0), abs(q1)) / h:
             v[i] = alone
 
 
