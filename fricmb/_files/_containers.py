@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import os
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -10,20 +12,41 @@ import numpy as np
 import scipy.sparse
 
 from fricmb._files._mat import mat_5
-from fricmb.errors import FileError, MissingExtraError
+from fricmb._files._text import FREE
+from fricmb.errors import FileError, MissingExtraError, shown
 
 Arrays = dict[str, Any]
+#: Packing makes no more of a byte than this.
+DEFLATED = 1032
 
 
 def npz_arrays(path: Path) -> Arrays:
     """Arrays of numpy."""
     try:
+        _check_npz(path)
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             return {key: file[key] for key in file.files}
-    except MemoryError:
+    except (FileError, MemoryError):
         raise
     except Exception as error:
-        raise FileError(f"{path}: expected an npz file of numbers ({error})") from error
+        raise FileError(f"{path}: expected an npz file of numbers ({shown(str(error))[1:-1]})") from error
+
+
+def _check_npz(path: Path) -> None:
+    """The bytes that the head of each array announces are there."""
+    with zipfile.ZipFile(path) as file:
+        for part in file.infolist():
+            if part.file_size > DEFLATED * part.compress_size + DEFLATED:
+                held = f"{part.compress_size} packed bytes hold less"
+                raise FileError(f"{path}: {part.filename}: {part.file_size} bytes are announced, {held}")
+            with file.open(part) as array:
+                version = np.lib.format.read_magic(array)
+                read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+                shape, _, kind = read(array)
+                left = part.file_size - array.tell()
+            if math.prod(shape) * kind.itemsize > left and not kind.hasobject:
+                announced = f"{' x '.join(map(str, shape))} numbers of {kind.itemsize} bytes are announced"
+                raise FileError(f"{path}: {part.filename}: {announced}, it has {left} bytes")
 
 
 def mat_arrays(path: Path) -> Arrays:
@@ -47,6 +70,9 @@ def hdf5_arrays(path: Path) -> Arrays:
         if isinstance(item, h5py.Dataset):
             if item.nbytes > memory():
                 raise FileError(f"{path}: {key}: it announces {item.nbytes:.3g} bytes, more than fit into memory")
+            held = item.id.get_storage_size()
+            if item.nbytes > DEFLATED * held + FREE:
+                raise FileError(f"{path}: {key}: it announces {item.nbytes} bytes, the file holds {held} of them")
             found[key] = item[()]
 
     try:

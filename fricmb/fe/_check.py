@@ -206,6 +206,8 @@ def _given(fe: FEModel, modes: Any) -> tuple[Floats, Floats, str, float]:
         raise SceneError(f"{fe._label()}: {source} cannot be matched without labels")
     if modes is None or not hasattr(modes, "at_labels"):
         raise SceneError(f"{fe._label()}: modes must be a path, Modes, or (frequencies, shapes)")
+    if np.iscomplexobj(modes.shapes):
+        raise SceneError(f"{fe._label()}: {source} are complex; give real ones (SOL 103, say)")
     shapes, missing = modes.at_labels(fe.labels)
     if missing:
         shapes = _with_inner(fe, shapes, np.asarray(modes.frequencies), source, modes.nodes)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,6 +10,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 
+from fricmb._files import Block, Output2, op4_fits
 from fricmb.errors import FileError, MissingExtraError, unknown_name
 
 #: Names of mass, stiffness, viscous and structural damping, for each ending such as "xx", "aa", "gg", "aax".
@@ -49,6 +48,7 @@ def library(what: str) -> Any:
 def _op4(path: Path) -> dict[str, Any]:
     from pyyeti.nastran import op4
 
+    op4_fits(path)
     try:
         found = op4.read(str(path), sparse=True)  # what a matrix announces is not allocated
     except Exception as error:
@@ -59,13 +59,39 @@ def _op4(path: Path) -> dict[str, Any]:
 
 
 def _op2(path: Path) -> dict[str, Any]:
-    from pyyeti.nastran.op2 import OP2
-
-    with contextlib.redirect_stdout(io.StringIO()):
-        found = OP2(str(path)).rdop2mats()
+    file = Output2(path)
+    found = {block.name.lower(): _matrix(file, block) for block in file.blocks if block.is_matrix}
     if not found:
         raise FileError(f"{path}: expected matrices, found results alone (modes: fm.measure.read)")
-    return {key.lower(): value for key, value in found.items()}
+    return found
+
+
+#: Kinds of numbers of a matrix, by what its trailer says: single and double precision, real and complex.
+_KINDS = {1: ("f4", 1), 2: ("f8", 1), 3: ("f4", 2), 4: ("f8", 2)}
+
+
+def _matrix(file: Output2, block: Block) -> Any:
+    """Columns of an op2, sparse: pieces of rows that follow one another."""
+    _, columns, rows, _, kind, *_ = (*block.trailer, *[0] * 5)
+    if kind not in _KINDS or len(block.records) != columns or rows < 0:
+        got = f"{len(block.records)} columns of kind {kind}"
+        raise FileError(f"{file.path}: matrix {block.name}: expected {columns} columns of kind 1 to 4, got {got}")
+    number, parts = _KINDS[kind]
+    number = "f8" if file.word == 8 else number
+    places, starts, values = [np.zeros(0, dtype=np.int64)], [0], [np.zeros(0)]
+    for column in block.records:
+        for piece in column:
+            row, part = file.split(piece, number)
+            part = part if parts == 1 else part[::2] + 1j * part[1::2]
+            if not 0 < row <= rows + 1 - part.size:
+                last = row + part.size - 1
+                raise FileError(f"{file.path}: matrix {block.name}: rows {row} to {last} of {rows} are announced")
+            places.append(np.arange(row - 1, row - 1 + part.size))
+            values.append(part)
+        starts.append(starts[-1] + sum(part.size for part in values[len(values) - len(column) :]))
+    return scipy.sparse.csc_array(
+        (np.concatenate(values), np.concatenate(places), np.array(starts)), shape=(rows, columns)
+    )
 
 
 def _dmig(path: Path) -> tuple[dict[str, Any], Any]:

@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from fricmb._files import Output2
 from fricmb.errors import FileError
 from fricmb.fe import _ansys, _nastran
+from fricmb.measure._op2_modes import op2_modes
 from fricmb.measure._types import Measured, Modes
 
 
@@ -38,39 +40,24 @@ def read_rst(path: Path, over: tuple[float, float] | str | None) -> Measured:
 def read_op2(path: Path, over: object) -> Measured:
     """Of a modal run of Nastran: frequencies, shapes along the axes of each node, modal masses, coordinates."""
     _nastran.library(f"measure.read of {path.name}")
+    file = Output2(path)
+    modes, notes = op2_modes(file)
+    if not any(block.name.startswith("EQEXIN") for block in file.blocks):
+        return Measured(modes=modes, notes=notes)
+    points, more = _coordinates(path)
+    return Measured(modes=modes, points=points, notes=(*notes, *more))
+
+
+def _coordinates(path: Path) -> tuple[dict[int, Any], tuple[str, ...]]:
+    """Places of nodes, where they can be understood."""
     from pyyeti.nastran.op2 import OP2
 
     with contextlib.redirect_stdout(io.StringIO()):
-        file = OP2(str(path))
-        tables = [name for name in file.dbnames if name.startswith(("OUG", "BOPHIG"))]
         try:
-            found = file.rdparampost(get_ougs=True, get_mats=False, get_dr_tables=False)
-        except Exception as error:
-            there = ", ".join(list(file.dbnames)[:12])
-            words = f"({type(error).__name__}: {error})"
-            raise FileError(f"{path}: expected LAMA and OUG of a modal run among {there} {words}") from error
-    table = next((found[name.lower()] for name in tables if name.lower() in found), None)
-    lama = np.atleast_2d(np.asarray(found.get("lama", np.zeros((0, 7)))))
-    if table is None or not len(lama):
-        there = ", ".join(list(file.dbnames)[:12])
-        raise FileError(f"{path}: expected frequencies (LAMA) and real modes (OUG, SOL 103), found {there}")
-    if table.shape[1] != len(lama):
-        raise FileError(f"{path}: expected {len(lama)} shapes, as many as frequencies; got {table.shape[1]}")
-    labels = np.array([(int(node), int(dof)) for node, dof in table.index], dtype=np.int64)
-    plain = (labels[:, 1] >= 1) & (labels[:, 1] <= 6)
-    nodes = np.unique(labels[plain, 0])
-    shapes = np.full((len(lama), nodes.size, 6), np.nan)
-    shapes[:, np.searchsorted(nodes, labels[plain, 0]), labels[plain, 1] - 1] = table.to_numpy()[plain].T
-    # of a free structure eigenvalues round 0 may be negative
-    modes = Modes(
-        frequencies=np.sqrt(np.maximum(lama[:, 2], 0.0)),
-        damping_ratios=np.zeros(len(lama)),
-        masses=lama[:, 5],
-        nodes=nodes,
-        shapes=shapes,
-        round_off=float(np.finfo(np.float32).eps),
-    )
-    return Measured(modes=modes, points=_points(found.get("uset")))
+            found = OP2(str(path)).rdparampost(get_ougs=False, get_mats=False, get_dr_tables=False)
+        except Exception as error:  # shapes can be read without them
+            return {}, (f"coordinates of nodes are not read ({type(error).__name__})",)
+    return _points(found.get("uset")), ()
 
 
 def _points(uset: Any) -> dict[int, Any]:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import scipy.io
 
-from fricmb._files import hdf5_arrays, mat_arrays, npz_arrays, text_of
+from fricmb._files import Clipped, hdf5_arrays, mat_arrays, npz_arrays, text_of, wav_fits
 from fricmb.errors import FileError, MissingExtraError, unknown_name
 from fricmb.measure._types import Frf, Measured, TimeSeries
 
@@ -88,6 +88,7 @@ def _names(rows: list[list[str]], decimal_comma: bool) -> tuple[list[str], int]:
 
 def read_wav(path: Path, over: Over) -> Measured:
     """Sound, integers over their full scale."""
+    wav_fits(path)
     try:
         rate, data = scipy.io.wavfile.read(path)
     except Exception as error:
@@ -121,7 +122,12 @@ def read_tdms(path: Path, over: Over) -> Measured:
     except ImportError:
         raise MissingExtraError(f"measure.read of {path.name}", "npTDMS", "tdms") from None
     try:
-        channels = [channel for group in TdmsFile.read(str(path)).groups() for channel in group.channels()]
+        with Clipped(path) as file:
+            _check_sizes(path, TdmsFile.read_metadata(file))
+        whole = TdmsFile.read(str(path))
+        channels = [channel for group in whole.groups() for channel in group.channels()]
+    except FileError:
+        raise
     except Exception as error:
         raise FileError(f"{path}: expected a TDMS file ({type(error).__name__}: {error})") from error
     signals = []
@@ -137,7 +143,18 @@ def read_tdms(path: Path, over: Over) -> Measured:
             raise FileError(f"{path}: channel {channel.name!r} has no times; give step=")
         unit = str(channel.properties.get("unit_string", ""))
         signals.append(TimeSeries(t=np.asarray(t, dtype=float), y=y.astype(float), name=channel.name, unit=unit))
-    return Measured(signals=tuple(signals))
+    cut = whole.file_status.incomplete_final_segment
+    return Measured(signals=tuple(signals), notes=("the last piece of the recording is cut off",) if cut else ())
+
+
+def _check_sizes(path: Path, file: Any) -> None:
+    """What all channels announce lies within the file."""
+    announced = 0
+    for channel in (channel for group in file.groups() for channel in group.channels()):
+        announced += len(channel) * (getattr(channel.data_type, "size", None) or 0)
+    if announced > path.stat().st_size:
+        there = path.stat().st_size
+        raise FileError(f"{path}: its heads announce {announced} bytes of values, the file has {there}; it is cut off")
 
 
 def _measured(path: Path, columns: Mapping[str, Any], over: Over) -> Measured:

@@ -1,4 +1,4 @@
-"""Writes modes as Nastran does in OUTPUT2: tables of frequencies (LAMA) and shapes (OUGV1), for tests of readers."""
+"""Writes as Nastran does in OUTPUT2: frequencies (LAMA), shapes (OUGV1) and matrices, for tests of readers."""
 
 import struct
 
@@ -26,18 +26,50 @@ def _table(name, records):
     return out + _key(1) + _record(struct.pack("<i", 0)) + _key(0)
 
 
-def write_modes(path, omega, nodes, shapes, masses, *, approach=22):
-    """Shapes (k, p, 6); approach 22: real modes, 92: complex ones."""
-    head = _key(3) + _record(struct.pack("<3i", 11, 27, 26)) + _key(7) + _record(b"NASTRAN FORT TAPE ID CODE - ")
-    head += _key(2) + _record(_words("XXXXXXXX", 2)) + _key(-1) + _key(0)
+HEAD = _key(3) + _record(struct.pack("<3i", 11, 27, 26)) + _key(7) + _record(b"NASTRAN FORT TAPE ID CODE - ")
+HEAD += _key(2) + _record(_words("XXXXXXXX", 2)) + _key(-1) + _key(0)
+
+
+def write_modes(path, omega, nodes, shapes, masses):
+    """Real shapes (k, p, 6)."""
     table = b"".join(
         struct.pack("<2i5f", j + 1, j + 1, w**2, w, w / (2 * np.pi), m, m * w**2)
         for j, (w, m) in enumerate(zip(omega, masses, strict=True))
     )
-    data = head + _table("LAMA", [bytes(4 * 146), table])
     shown = []
     for j, (w, shape) in enumerate(zip(omega, shapes, strict=True)):
-        ident = struct.pack("<5if", approach, 7, 0, 0, j + 1, w**2) + bytes(4 * 140)
+        ident = struct.pack("<5if", 22, 7, 0, 0, j + 1, w**2) + bytes(4 * 140)
         rows = [struct.pack("<2i6f", 10 * node + 2, 1, *row) for node, row in zip(nodes, shape, strict=True)]
         shown += [ident, b"".join(rows)]
-    path.write_bytes(data + _table("OUGV1", shown) + _key(0))
+    path.write_bytes(HEAD + _table("LAMA", [bytes(4 * 146), table]) + _table("OUGV1", shown) + _key(0))
+
+
+def write_complex_modes(path, poles, nodes, shapes, *, polar=False):
+    """Shapes (k, p, 6) as real and imaginary parts, or as sizes and phases in degrees."""
+    shown = []
+    for j, (pole, shape) in enumerate(zip(poles, shapes, strict=True)):
+        ident = struct.pack("<5i2f3i", 92, 1007, 0, 1, j + 1, pole.real, pole.imag, 0, 3 if polar else 2, 14)
+        pairs = (np.abs(shape), np.rad2deg(np.angle(shape))) if polar else (shape.real, shape.imag)
+        rows = [struct.pack("<2i12f", 10 * node + 2, 1, *a, *b) for node, a, b in zip(nodes, *pairs, strict=True)]
+        shown += [ident + bytes(4 * 40) + _words("", 96), b"".join(rows)]
+    path.write_bytes(HEAD + _table("OUGV1", shown) + _key(0))
+
+
+def _matrix(name, A):
+    """Double precision, each column in the pieces that its zeros leave."""
+    rows, columns = A.shape
+    trailer = struct.pack("<7i", 101, columns, rows, 2, 4 if np.iscomplexobj(A) else 2, 0, 0)
+    out = _key(2) + _record(_words(name, 2)) + _key(-1) + _key(7) + _record(trailer) + _key(-2)
+    out += _key(1) + _record(struct.pack("<i", 0)) + _key(2) + _record(_words(name, 2)) + _key(-3)
+    for j in range(columns):
+        out += _key(1) + _record(struct.pack("<i", 1))
+        held = np.flatnonzero(A[:, j])
+        for piece in np.split(held, np.flatnonzero(np.diff(held) > 1) + 1) if held.size else []:
+            data = struct.pack("<i", piece[0] + 1) + np.ascontiguousarray(A[piece, j]).tobytes()
+            out += _key(len(data) // 4) + _record(data)
+        out += _key(-4 - j)
+    return out + _key(1) + _record(struct.pack("<i", 0)) + _key(0)
+
+
+def write_matrices(path, **matrices):
+    path.write_bytes(HEAD + b"".join(_matrix(name.upper(), A) for name, A in matrices.items()) + _key(0))

@@ -120,7 +120,7 @@ MEASUREMENTS = ["strip.frd", "a.op2", "a.uff", "binary.uff", "a.csv", "a.wav", "
 KINDS = [("fe", name) for name in MATRICES] + [("measure", name) for name in MEASUREMENTS]
 #: A part of such a file is one of its own: nothing says how long it was meant to be.  DMIG entries: those of the mass
 #: come last, and rows without mass are counted by `check`.
-OF_ANY_LENGTH = ("a.csv", "a.wav", "a.tdms", "chain.pch")
+OF_ANY_LENGTH = ("a.csv", "a.tdms", "chain.pch")
 #: Values in whole datasets.
 DATASETS = {"a.uff": (200,)}
 
