@@ -31,7 +31,8 @@ from fricmb.integrate.problem import LAW_SMOOTH, Floats, Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAILURES, FULL, SLICE_OVER
 from fricmb.integrate.run.stop import ended
-from fricmb.integrate.signals.longest_steps import steps_of_run
+from fricmb.integrate.signals.largest_value import largest_forces
+from fricmb.integrate.signals.longest_steps import shortest_of, steps_of_run
 from fricmb.integrate.step.stages import STIFF
 from fricmb.integrate.step.step_control import FREE, SAMPLED, first_step
 
@@ -99,7 +100,7 @@ def run_mechanism(
             code = impacts.jump(code) if impacts.may_jump(code) else code
         if code == DONE:
             chunks.note_changes(problem.contacts, start, y.mode, y.n)
-            _settle(workspace, problem, start, t_end)
+            _settle(workspace, problem, start, t_end, shortest_of(limits, start.t, t_end, mech.breakpoints))
             if impacts is not None:
                 code, go_on = impacts.at_start(), impacts.around(stepping)
         if code == DONE:
@@ -165,12 +166,14 @@ def _longest_step(problem: Problem, span: float) -> float:
     return (SAMPLED if short else FREE) * span
 
 
-def _settle(workspace: RunWorkspace, problem: Problem, start: Start, t_end: float) -> None:
-    """What counts as 1, and the first step, from what is found at the start."""
+def _settle(workspace: RunWorkspace, problem: Problem, start: Start, t_end: float, shortest: float) -> None:
+    """What counts as 1, and the first step, from what is found at the start; ``shortest`` time inputs tell apart."""
     y, out, c = workspace.y, workspace.out, workspace.control
-    load = _load(mechanism_of(problem), y)
-    if not np.any(y.v) and (c.mass * np.abs(y.a)).max(initial=0.0) <= max(ROUND_OFF * load, NOTHING):
-        to_come = _speeds_to_come(problem, start, t_end, load, c.mass, float(np.abs(y.g).max(initial=0.0)))
+    load, pushed = _load(mechanism_of(problem), y), 0.0 if np.any(y.v) else _largest_push(problem, start.t, t_end)
+    if not np.any(y.v) and (c.mass * np.abs(y.a)).max(initial=0.0) <= max(ROUND_OFF * max(load, pushed), NOTHING):
+        brief = 10.0 * shortest * pushed / c.mass.max() if pushed > 0.0 else 0.0
+        slip = max(float(np.abs(y.g).max(initial=0.0)), brief)
+        to_come = _speeds_to_come(problem, start, t_end, (load, pushed), c.mass, slip)
         c.floor_v[:] = np.maximum(c.floor_v, to_come)
         out.top_slip = max(out.top_slip, _slip_by(problem, start, to_come)[0])
     weight = np.sqrt(c.mass)
@@ -220,18 +223,26 @@ def _load(m: Mechanism, y: State) -> float:
     return max(float(np.abs(x).max(initial=0.0)) for x in (y.lam, y.F, m.f))
 
 
+def _largest_push(problem: Problem, t_start: float, t_end: float) -> float:
+    """Largest force of a run that loads prescribed as functions of time bring to one degree of freedom."""
+    size, B = largest_forces(problem, t_start, t_end), mechanism_of(problem).B
+    return float((np.abs(B.value) * size[B.column]).max(initial=0.0))
+
+
 def _speeds_to_come(
-    problem: Problem, start: Start, t_end: float, load: float, mass: Floats, slip: float
+    problem: Problem, start: Start, t_end: float, loads: tuple[float, float], mass: Floats, slip: float
 ) -> Floats:
     """Speeds (n,) that count as 1 where everything is at rest: from accelerations a little later, without friction.
 
     That which would bring most energy, for each its own mass.  Where there are none, either, a small part of what the
     load would bring, or of the largest ``slip`` speed: bristles that drivers have still to bend are all that will push.
+    Beside the ``loads``, those at the start and the largest of the run, the tail of a bell (1e-300) is none.
     """
+    load, largest = loads[0], max(loads)
     span = t_end - start.t
     for part in LATER:
         a = _without_friction(problem, start, start.t + part * span, np.zeros(problem.n))
-        if np.isfinite(a).all() and (mass * np.abs(a)).max() > ROUND_OFF * load:
+        if np.isfinite(a).all() and (mass * np.abs(a)).max() > ROUND_OFF * largest:
             return np.asarray(1e-3 * part * span * (np.sqrt(mass) * np.abs(a)).max() / np.sqrt(mass))
     return np.full(problem.n, 1e-4 * max(span * load / mass.max(), slip))
 

@@ -8,25 +8,29 @@ pulse is too short to be seen.
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.integrator import Tolerance
-from fricmb.integrate.problem import Codes, Floats, Input, Problem
+from fricmb.integrate.problem import Floats, Input, Problem
 from fricmb.integrate.run.breakpoints import EPS, count_until
 from fricmb.integrate.signals.jets import bounds
+from fricmb.integrate.signals.largest_value import FIRST, largest_value
 
-#: Stretches that are looked at first; most of all; halvings of one.
-FIRST, MOST, DEEPEST = 64, 200_000, 40
+#: Most stretches of all; halvings of one.
+MOST, DEEPEST = 200_000, 40
 #: A stretch is halved where that saves so much of its steps; stretches are one where their steps differ by less.
 SAVES, ALIKE = 0.75, 1.4
 #: So many steps of a stretch are worth a look at its quarters.
 MANY = 16
+#: Where quarters save nothing, many short bells may hide in each: ``SAMPLES`` of those left are looked at in so
+#: many parts in turn, where steps are ``MANY`` times as many as parts.
+PARTS, SAMPLES = (32, 256, 2048), 2
 #: Part of such a step that BDF takes at most: it looks at its ends alone.
 OF_BDF = 0.25
 #: Stretches of a run on which a function without bounds is sampled; round-off of its differences.
@@ -60,6 +64,13 @@ def steps_of_run(problem: Problem, t_start: float, t_end: float, tolerance: Tole
     return _with_kinks(found, kinks[(kinks > t_start) & (kinks < t_end)]) if kinks.size else found
 
 
+def shortest_of(steps: LongestSteps, t_start: float, t_end: float, breakpoints: Floats) -> float:
+    """The shortest time that inputs tell apart: of steps they let be, and between bends and jumps of theirs."""
+    ends = np.unique(np.concatenate([steps.edge, breakpoints, [t_start, t_end]]))
+    ends = ends[(ends >= t_start) & (ends <= t_end)]
+    return float(min(np.abs(steps.longest).min(), np.diff(ends).min(initial=t_end - t_start)))
+
+
 def _with_kinks(steps: LongestSteps, kinks: Floats) -> LongestSteps:
     """The same where steps end at kinks as well."""
     edge = np.unique(np.concatenate([steps.edge, kinks]))
@@ -88,31 +99,27 @@ def _of_one(given: Input, t_start: float, t_end: float, tol: float, nodes: int) 
         return _sampled(given, t_start, t_end, tol, nodes)
     edge = np.linspace(t_start, t_end, FIRST + 1)
     low, high = edge[:-1], edge[1:]
-    value = bounds(given.tape, given.parameters, low, high, 1).size(0)
-    scale = np.max(value[np.isfinite(value)], initial=0.0)
+    scale = largest_value(given, t_start, t_end)
     if scale == 0.0:
         return LongestSteps.none()
     steps = _allowed(given, low, high, nodes, scale)
     part = tol ** (1.0 / nodes)
     done: list[tuple[Floats, Floats, Floats]] = []
+    due = np.zeros(low.size)  # halvings that are known to pay in the end
     for depth in range(DEEPEST):
         short = part * steps < high - low
         open_ = short if low.size < MOST and depth < DEEPEST - 1 else np.zeros_like(short)
         done.append((low[~open_], high[~open_], steps[~open_]))
         if not open_.any():
             break
-        low, high, steps = low[open_], high[open_], steps[open_]
+        low, high, steps, due = low[open_], high[open_], steps[open_], due[open_]
         middle = 0.5 * (low + high)
         left, right = _allowed(given, low, middle, nodes, scale), _allowed(given, middle, high, nodes, scale)
-        better = _saved(2.0, steps, left, right)
-        again = ~better & (high - low > MANY * part * steps)
-        if again.any():  # a bell in the middle of a stretch is in both halves, and each saves little
-            ends = np.linspace(low[again], high[again], 5)
-            quarters = (_allowed(given, a, b, nodes, scale) for a, b in itertools.pairwise(ends))
-            better[again] = _saved(4.0, steps[again], *quarters)
+        due = np.maximum(due, _halvings(given, (low, high, steps), (left, right), nodes, scale, part))
+        better = due > 0
         done.append((low[~better], high[~better], steps[~better]))
         low, high = np.concatenate([low[better], middle[better]]), np.concatenate([middle[better], high[better]])
-        steps = np.concatenate([left[better], right[better]])
+        steps, due = np.concatenate([left[better], right[better]]), np.tile(due[better] - 1, 2)
         if not low.size:
             break
     low, high, steps = (np.concatenate([d[i] for d in done]) for i in range(3))
@@ -122,7 +129,38 @@ def _of_one(given: Input, t_start: float, t_end: float, tol: float, nodes: int) 
     return _merged(LongestSteps(np.append(low[order], t_end), longest))
 
 
-def _saved(count: float, steps: Floats, *parts: Floats) -> Codes:
+def _halvings(
+    given: Input, whole: tuple[Floats, Floats, Floats], halves: tuple[Floats, Floats], nodes: int, scale: float,
+    part: float,
+) -> Floats:  # fmt: skip
+    """After how many halvings of stretches ``whole`` (low, high, steps) steps are saved; 0 where none are known to."""
+    low, high, steps = whole
+    found = np.where(_saved(2.0, steps, *halves), 1.0, 0.0)
+    with np.errstate(divide="ignore"):
+        many = (high - low) / (part * steps)
+    again = (found == 0.0) & (many > MANY)
+    if again.any():  # a bell in the middle of a stretch is in both halves, and each saves little
+        found[again] = _saves_in_parts(given, low[again], high[again], steps[again], 4, nodes, scale)
+    for count in PARTS:
+        again = np.flatnonzero((found == 0.0) & (many > MANY * count))
+        if not again.size:
+            break
+        some = again[:: max(1, again.size // SAMPLES)]
+        if _saves_in_parts(given, low[some], high[some], steps[some], count, nodes, scale).any():
+            found[again] = math.log2(count)
+    return found
+
+
+def _saves_in_parts(
+    given: Input, low: Floats, high: Floats, steps: Floats, count: int, nodes: int, scale: float
+) -> NDArray[np.bool_]:
+    """Whether ``count`` parts of each stretch are better than the stretch as a whole."""
+    ends = np.linspace(low, high, count + 1)
+    parts = _allowed(given, ends[:-1].ravel(), ends[1:].ravel(), nodes, scale)
+    return _saved(float(count), steps, *parts.reshape(count, -1))
+
+
+def _saved(count: float, steps: Floats, *parts: Floats) -> NDArray[np.bool_]:
     """Whether ``count`` parts of stretches, by the steps allowed in each, are better than the stretches as a whole."""
     with np.errstate(divide="ignore", invalid="ignore"):
         before, after = count / steps, np.sum([1.0 / part for part in parts], axis=0)
@@ -139,7 +177,7 @@ def _allowed(given: Input, low: Floats, high: Floats, nodes: int, scale: float) 
         factor *= nodes + rate
         most = np.maximum(most, factor * jet.size(nodes + rate))
     least = np.where(jet.low[0] > 0.0, jet.low[0], np.where(jet.high[0] < 0.0, -jet.high[0], 0.0))
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         found = (np.maximum(scale, least) / (_farthest(nodes) * most)) ** (1.0 / nodes)
     return np.where(np.isnan(found), 0.0, found)
 
