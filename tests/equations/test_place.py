@@ -10,6 +10,7 @@ from scipy.special import erf, fresnel
 
 import fricmb as fm
 from fricmb.equations import function, signal_expression
+from fricmb.equations._place import integrate
 
 T = fm.t
 AT = 50.3
@@ -54,6 +55,15 @@ def test_pulses_without_a_closed_form_or_with(velocity, exact, width):
     """By the place at 2 ``AT``, which is twice the integral from the middle for even pulses."""
     found = place(velocity((T - AT) / width, width), 2 * AT)
     assert found == pytest.approx(2 * exact(AT / width, width), rel=1e-10)
+
+
+@pytest.mark.parametrize("hertz", [0.5, 100.0, 44.1e3])
+def test_the_place_of_a_wave_is_a_closed_form_however_fast(hertz):
+    """By quadrature each value of a wave of 100 Hz would cost in proportion to the periods before it."""
+    omega = 2 * np.pi * hertz
+    velocity = 0.4 * sympy.cos(omega * T)
+    assert integrate(velocity, T, []) is not None
+    assert place(velocity, 8.0) == pytest.approx(0.4 * math.sin(omega * 8.0) / omega, abs=8.0 * 0.4 * 2.3e-16)
 
 
 def test_trains_of_bells():
