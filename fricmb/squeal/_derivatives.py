@@ -17,6 +17,8 @@ from fricmb.squeal._place import Complexes, Floats, Places
 _STEP = 1e-5
 #: Cosine of right and left vector below which two modes have met, and derivatives of one of them alone mean nothing.
 _MET = 1e-4
+#: Real parts below this share of an eigenvalue are round-off.
+_ROUND_OFF = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,14 +64,17 @@ class Derivatives:
         return [(self.names[i], *(float(column[i]) for column in columns)) for i in order.tolist()]
 
     def __str__(self) -> str:
-        met = f"eigenvalue {self.eigenvalue:.6g}, partner {self.partner:.6g}; relative to the values of the parameters"
+        both = (self.eigenvalue, self.partner)
+        pair = [x if abs(x.real) > _ROUND_OFF * abs(x) else complex(0.0, x.imag) for x in both]
+        met = f"eigenvalue {pair[0]:.6g}, partner {pair[1]:.6g}; relative to the values of the parameters"
+        wide = max(28, *(len(name) for name, *_ in self.rows()))
         more = f" {'of ' + self.over:>14}" if self.threshold is not None else ""
-        lines = [met, f"{'parameter':28} {'value':>12} {'of growth':>12} {'of frequency':>12} {'apart':>12}{more}"]
+        lines = [met, f"{'parameter':{wide}} {'value':>12} {'of growth':>12} {'of frequency':>12} {'apart':>12}{more}"]
         for name, *numbers in self.rows():
             shown = numbers if self.threshold is not None else numbers[:-1]
             widths = [12, 12, 12, 12, 14]
-            cells = (f"{'-':>{w}}" if np.isnan(x) else f"{x:{w}.4g}" for x, w in zip(shown, widths, strict=False))
-            lines.append(f"{name:28} " + " ".join(cells))
+            cells = (f"{'-':>{w}}" if np.isnan(x) else f"{x + 0.0:{w}.4g}" for x, w in zip(shown, widths, strict=False))
+            lines.append(f"{name:{wide}} " + " ".join(cells))
         if np.isnan(self.slopes).any():
             lines.append("-: where the two modes have met, eigenvalues have no derivative; apart has one")
         return "\n".join(lines)

@@ -286,6 +286,16 @@ def test_places_without_sliding_are_told():
         study(two_modes(speed=0.0), over={MU: [0.1, 0.2]})
 
 
+def test_the_line_of_a_picture_passes_through_the_thresholds(damped):
+    """Places were 0.2 apart, and the line between colours was drawn as much as half of that away."""
+    shown = damped.plot().axes[0].collections
+    border = next(c for c in shown if len(c.get_edgecolor()) and c.get_linewidth()[0] == 1.4)
+    line = np.concatenate([path.vertices for path in border.get_paths()])
+    for threshold in damped.thresholds:
+        at = np.array([threshold.at[PRESS], threshold.value])
+        assert np.abs(line - at).sum(axis=1).min() < 0.01
+
+
 def test_the_report_needs_no_network(tmp_path, damped):
     damped.answered.clear()
     damped.feed()
