@@ -1,6 +1,7 @@
 """Break-away that exceeds slip by different amounts forward and back, against a program of events of its own."""
 
 import math
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -21,6 +22,7 @@ def load(t, phase, functions=math):
     return 9.0 * functions.sin(2.0 * t + phase) + 2.0 * functions.sin(5.3 * t)
 
 
+@cache
 def own_row(n, t_end):
     """Blocks on springs of their own and between neighbours; masses do not couple, so each decides alone."""
     stiff = (np.diag(np.full(n, K)) + 0.3 * K * (2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1))) if n > 1 else K

@@ -141,7 +141,7 @@ def shaken(law):
         g = law.mu_k + (law.mu_s - law.mu_k) * np.exp(-((v / law.v_s) ** 2))
         return v - law.sigma0 * abs(v) * z / g
 
-    true = solve_ivp(rates, (0, 1), [0.0] * (2 + states), method="Radau", rtol=1e-9, atol=1e-11, max_step=2e-4)
+    true = solve_ivp(rates, (0, 1), [0.0] * (2 + states), method="LSODA", rtol=1e-9, atol=1e-11, max_step=2e-4)
     return true.y[0, -1]
 
 
