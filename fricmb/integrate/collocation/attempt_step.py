@@ -38,12 +38,27 @@ def held_at_rest(packed: Packed, y: State, one: OneStep, i: int) -> float:
     return push
 
 
+#: Part of the velocity reached in a step below which what was known before it is no measure.
+LEFT_BEHIND = 1e-3
+
+
 @kernel
-def weigh_inputs(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float) -> None:
+def begins_within(y: State, one: OneStep, acc: Accuracy, h: float) -> bool:
+    """Whether a velocity reached in the step just solved is far above all that was known of it before."""
+    found = False
+    for i in range(y.q.shape[0]):
+        known = max(acc.v[i], abs(y.v[i]), acc.floor_v[i], h * abs(y.a[i]))
+        found = found or known < LEFT_BEHIND * abs(y.v[i] + one.exact.end[1, i])
+    return found
+
+
+@kernel
+def weigh_inputs(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float, solved: bool) -> None:
     """What a unit of every input, held for the step, changes in velocities, each by its own scale.
 
     What has never moved, as friction holds it, has no scale but what friction could do: its force is resolved to a part
-    of the limit.  So has what moved by the round-off of others, as when one of them comes to rest.
+    of the limit.  So has what moved by the round-off of others, as when one of them comes to rest.  ``solved``: what
+    has not moved and is taken along under a smooth law is measured by what it reaches in the step.
     """
     ex = one.exact
     top = widest(acc.v)
@@ -51,6 +66,9 @@ def weigh_inputs(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float
         scale = max(acc.v[i], abs(y.v[i]), acc.floor_v[i])
         if scale <= max(2.0 * acc.floor_v[i], 1e-10 * top):
             scale = max(scale, h * held_at_rest(packed, y, one, i))
+        if solved:
+            reached = abs(y.v[i] + ex.end[1, i])
+            scale = reached if scale < LEFT_BEHIND * reached else scale
         one.scale[i] = scale
     for c in range(ex.b1.shape[0]):
         worst = 0.0
@@ -185,7 +203,7 @@ def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accur
     guess_ports(packed, y, one, h)
     if one.last_t == y.t and h <= one.last_h:
         guess_forces(packed, y, one, h / one.last_h)
-    weigh_inputs(packed, y, one, acc, h)
+    weigh_inputs(packed, y, one, acc, h, False)
     newton_tolerances(packed, acc, h, y, one.tol, one.scale, 1e-3)
     one.counts[2] += 1
     if ex.c1.shape[0] > y.g.shape[0]:
@@ -199,5 +217,8 @@ def exact_attempt(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accur
     end_blocks(ex, slot, h)
     largest = 0.0
     for i in range(y.q.shape[0]):
+        one.st.V[0, i] = y.v[i] + ex.end[1, i]  # forces are weighed by what the step reaches
         largest += abs(ex.end[0, i]) + abs(ex.end[1, i])
+    if begins_within(y, one, acc, h):
+        weigh_inputs(packed, y, one, acc, h, True)
     return largest < 1e290

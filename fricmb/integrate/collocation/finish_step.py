@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from fricmb.integrate.collocation.attempt_step import LEFT_BEHIND
 from fricmb.integrate.collocation.block_motion import two_sum
 from fricmb.integrate.collocation.motion_in_step import is_stiff, stiff_nodes
 from fricmb.integrate.collocation.powers_in_step import node_powers, powers_on_motion
@@ -100,6 +101,8 @@ def visible(y: State, one: OneStep, acc: Accuracy, j: int, h: float) -> float:
         size += abs(ex.v_u[i, j]) / max(rate, 1e-290)
         if size > 0.0:
             scale = max(acc.v[i], abs(y.v[i]), abs(y.a[i]) * h, acc.floor_v[i], 1e-10 * top, 1e-290)
+            reached = abs(y.v[i] + ex.end[1, i])
+            scale = reached if scale < LEFT_BEHIND * reached else scale
             most = max(most, size / scale)
     return most
 

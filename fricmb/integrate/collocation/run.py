@@ -38,9 +38,10 @@ BLOCKS = (
 
 
 def exact_step(problem: Problem, exact: Exact) -> OneStep:
-    """Arrays for exact steps, which have no factors, and of stages nothing but their times."""
+    """Arrays for exact steps, which have no factors, and of stages nothing but their times and the last velocities."""
     s = exact.xf.shape[1]
-    stages = Stages(**(empty_arrays(Stages) | {"t": np.zeros(s), "hA": np.zeros((s, s))}))
+    last = np.zeros((1, problem.n))
+    stages = Stages(**(empty_arrays(Stages) | {"t": np.zeros(s), "hA": np.zeros((s, s)), "V": last}))
     return one_step_of(problem, radau(s), Factor(**empty_arrays(Factor)), stages, exact)
 
 
