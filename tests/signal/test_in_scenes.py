@@ -313,3 +313,14 @@ def test_files_give_back_the_same_series(kind, tmp_path):
     scene = block(fm.Signal(t, push(t) / 3.0, kind=kind))
     fm.simulate(scene, t_end=1.0).save(tmp_path / "run.npz")
     assert fm.Solution.load(tmp_path / "run.npz").scene == scene
+
+
+@pytest.mark.parametrize("samples", [41, 401])
+def test_three_stages_on_a_cubic_series_do_what_seven_do(samples):
+    """Asked for by name, where a cubic would get seven: many more steps, and the same motion."""
+    t = np.linspace(0.0, 10.0, samples)
+    scene = block(fm.Signal(t, push(t), kind="cubic"), fm.laws.Stribeck(mu_s=1.0, mu_k=0.8, v_s=0.1))
+    few, more = (fm.simulate(scene, t_end=10.0, rtol=1e-6, method=Radau(stages=s)) for s in (3, 7))
+    assert [e.kind for e in few.events] == [e.kind for e in more.events]
+    assert [e.t for e in few.events] == pytest.approx([e.t for e in more.events], abs=1e-5)
+    assert few["b.x"][-1] == pytest.approx(more["b.x"][-1], abs=1e-5)
