@@ -68,22 +68,20 @@ def put(y: State, rate: Floats, out: Floats) -> None:
 
 @kernel
 def start_past(y: State, past: Differences, formula: Formula, h: float) -> None:
-    """Order 2 at y with a step of h, from the rates there, as if accelerations had not changed before.
+    """Order 1 at y with a step of h, from the rates there.
 
-    Motion under constant forces is exact so; of what changes, the first step errs by a third of what one of order 1
-    would.  The polynomial of a step of the one-step method is no start: between its stages it is far less accurate than
-    at its end, and no step of BDF would pass on such a history.
+    The polynomial of a step of the one-step method is no start: between its stages it is far less accurate than at its
+    end, and no step of BDF would pass on such a history.
     """
     n = y.q.shape[0]
     past.D[:, :] = 0.0
     put(y, y.rate, past.D[0])
     for i in range(n):
-        past.D[1, i] = h * (y.v[i] - 0.5 * h * y.a[i])
-        past.D[2, i] = h * h * y.a[i]
+        past.D[1, i] = h * y.v[i]
         past.D[1, n + i] = h * y.a[i]
     for i in range(y.z.shape[0]):
         past.D[1, 2 * n + i] = h * y.zd[i]
-    begin_at(past, 2, h)
+    begin_at(past, 1, h)
     formula.made = 0.0
 
 

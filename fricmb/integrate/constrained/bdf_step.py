@@ -151,7 +151,8 @@ def scaled(y: State, c: Control, past: Differences, formula: Formula, error: Flo
     share = share_of(y, c, past)
     for i in range(n):
         size = max(formula.reach[i], abs(past.new[i] - formula.origin[i]), past.h * formula.one.scale[i], 1e-290)
-        size = max(size, ROUNDINGS * EPS * c.q[i] / share)
+        if not has_joints(y):
+            size = max(size, ROUNDINGS * EPS * c.q[i] / share)
         worst = max(worst, abs(error[n + i]) / formula.one.scale[i], abs(error[i]) / size)
     for i in range(y.z.shape[0]):
         worst = max(worst, abs(error[2 * n + i]) / max(c.z[i], abs(past.new[2 * n + i]), c.noise_z[i], 1e-290))

@@ -18,7 +18,7 @@ from fricmb.integrate.constrained.mode_trial import most_light
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_velocities
-from fricmb.integrate.constrained.radau_step import Control
+from fricmb.integrate.constrained.radau_step import Control, has_joints
 from fricmb.integrate.constrained.recorder import Record, crowded
 from fricmb.integrate.constrained.singular_position import start_watch, starts_dependent
 from fricmb.integrate.constrained.stages import Stages
@@ -47,8 +47,8 @@ from fricmb.integrate.signals.longest_steps import OF_BDF, kink_from, longest_fr
 #: Steps of the one-step method, in times by which slip grows e-fold, from which on BDF does not begin: what the short
 #: steps of its start err by would grow with the slip.
 GROWING = 0.1
-#: Times its step that the one-step method may want for the next one where BDF begins: one that was cut short says
-#: nothing of what BDF has to get by.
+#: Times its step that the one-step method may want for the next one where BDF begins without joints: one that was cut
+#: short says nothing of what BDF has to get by.
 NATURAL = 2.0
 
 
@@ -146,7 +146,7 @@ def drive(
             t = y.t
             code = radau_step(mech, k, w, y, end, before, st, c, out, rec, part, goal)
             h = y.t - t
-            found = may_begin(past, code) and h > 0.0 and c.wanted <= NATURAL * h
+            found = may_begin(past, code) and h > 0.0 and (has_joints(y) or c.wanted <= NATURAL * h)
             if found and growth_of_slip(mech, k, y, st, h) <= GROWING:
                 formula.usual = max(h, c.wanted)
                 start_past(y, past, formula, min(0.1 * h, past.good if past.good > 0.0 else h))
