@@ -14,6 +14,7 @@ from fricmb.integrate import Tolerance
 from fricmb.integrate.methods import run_setup
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.named import integrators
+from fricmb.integrate.run import workspace
 from tests.ticking import ticking
 
 SCENES = {
@@ -117,3 +118,37 @@ def test_space_for_rows_may_end_where_forces_jump(method, monkeypatch):
     for size in range(64, 84):
         monkeypatch.setattr(run_setup, "CHUNK", size)
         assert np.array_equal(motion(fm.simulate(scene, **how)), alone), size
+
+
+def on_a_spring(cubic):
+    """A body on a spring, whose equations are linear or are not."""
+    body, law = fm.Body("m", mass=1.0, position={"x": 1.5}), fm.laws.Coulomb(mu_s=0.1, mu_k=0.07)
+    spring = fm.Spring("k", body, axis="x", stiffness=1.0, cubic=cubic)
+    return fm.Scene("spring", [body, spring, fm.Contact("c", body, law=law, normal_force=1.0)])
+
+
+def ageing_one(first):
+    """Two blocks on a belt, of which the first or the second has friction that ages."""
+    ages = fm.laws.RateAndState(mu_0=0.6, a=0.01, b=0.015, L=1e-3, v_0=1e-3)
+    laws = [ages, fm.laws.Coulomb(mu_s=0.4)]
+    belt, parts = fm.Driven("belt", velocity={"x": 0.3}), []
+    for i, law in enumerate(laws if first else laws[::-1]):
+        body = fm.Body(f"b{i}", mass=1.0, velocity={"x": 0.3})
+        parts += [body, fm.Spring(f"k{i}", body, axis="x", stiffness=10.0)]
+        parts.append(fm.Contact(f"c{i}", body, belt, law=law, normal_force=2.0))
+    parts.append(fm.Spring("tie", parts[0], parts[3], axis="x", stiffness=1.0))
+    return fm.Scene("two", [belt, *parts])
+
+
+@pytest.mark.parametrize(
+    ("make", "one", "other", "t_end", "rtol"),
+    [(on_a_spring, 2.0, 0.0, 20.0, 1e-11), (ageing_one, True, False, 1.5, 1e-5)],
+)
+def test_a_run_behind_one_of_another_scene_of_the_same_sizes(make, one, other, t_end, rtol, monkeypatch):
+    """What is linear, and which law is steep, was taken from the scene that had been run before."""
+    how = {"t_end": t_end, "rtol": rtol, "method": "radau"}
+    monkeypatch.setattr(workspace, "_store", {})
+    alone = motion(fm.simulate(make(one), **how))
+    monkeypatch.setattr(workspace, "_store", {})
+    fm.simulate(make(other), **how)
+    np.testing.assert_array_equal(motion(fm.simulate(make(one), **how)), alone)

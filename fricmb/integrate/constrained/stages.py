@@ -10,6 +10,8 @@ VII.2).  A = T diag(lam) T^-1 splits the Newton system into one real and some co
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from fricmb.integrate.compile.band import factor_band, length_of, solve_band
@@ -26,6 +28,7 @@ from fricmb.integrate.constrained.steep_laws import Steep, set_base, steep_laws_
 from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.constrained.turning import Turns, turns_of
 from fricmb.integrate.problem import (
+    LAW_SMOOTH,
     NORMAL_CONSTANT,
     Complexes,
     Complexes2,
@@ -113,6 +116,13 @@ def is_plain(problem: Problem) -> bool:
     slip = mechanism_of(problem).slip
     of_rate = np.repeat(np.arange(len(slip.form_start) - 1) % 2 == 1, np.diff(slip.form_start))
     return not (of_rate & (slip.form_index >= 1) & (slip.form_index <= problem.n)).any()
+
+
+def facts_of(problem: Problem) -> tuple[Any, ...]:
+    """What stages say of a problem beside the lengths of their arrays: they serve none of which it differs."""
+    contacts = problem.contacts
+    rows = (contacts.law == LAW_SMOOTH).tobytes(), contacts.row.tobytes(), contacts.z_start.tobytes()
+    return is_plain(problem), *rows
 
 
 @block

@@ -9,12 +9,13 @@ from fricmb.integrate.constrained.moving import Moving, lengths, moving_of
 from fricmb.integrate.constrained.pattern import of_pattern
 from fricmb.integrate.constrained.problem_structs import mech_of
 from fricmb.integrate.constrained.radau_step import Control, control_of
-from fricmb.integrate.constrained.stages import Stages, stages_of
+from fricmb.integrate.constrained.stages import Stages, facts_of, stages_of
 from fricmb.integrate.constrained.state import Instant, State, instant_of, state_of
 from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.constrained.turning import turning_rows
 from fricmb.integrate.constrained.watch import Watch, watch_of
 from fricmb.integrate.model.forces import longest_call
+from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Problem
 from fricmb.integrate.run.workspace import lent
 from fricmb.integrate.step.tableau import radau
@@ -49,7 +50,8 @@ def evaluation(problem: Problem) -> AbstractContextManager[Evaluation]:
 
 def run_workspace(problem: Problem, stages: int) -> AbstractContextManager[RunWorkspace]:
     """Workspace for a run of so many stages; states are empty."""
-    return lent(("run of a mechanism", stages, _sizes(problem)), lambda: _made(problem, stages))
+    facts = once_per(problem, "facts of stages", lambda: facts_of(problem))
+    return lent(("run of a mechanism", stages, _sizes(problem), facts), lambda: _made(problem, stages))
 
 
 def _made(problem: Problem, stages: int) -> RunWorkspace:
