@@ -1,9 +1,13 @@
 """Errors of a run by BDF where nothing damps: those of its steps add up."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 import fricmb as fm
+from fricmb.integrate.constrained import bdf_history
+from fricmb.integrate.methods.bdf_stability import guard_of
 
 
 def arcs(grid, mu_s, mu_k, belt, x, v):
@@ -45,3 +49,19 @@ def test_errors_of_steps_sum_to_a_few_tolerances(mu_s, mu_k, belt, x, rtol):
     assert np.abs(sol.q[0] - q).max() < 3 * rtol * np.abs(q).max()
     assert np.abs(sol.v[0] - v).max() < 3 * rtol * np.abs(v).max()
     assert sol.stats.n_steps + sol.stats.n_rejected < 100
+
+
+def test_of_many_bodies_no_matrix_is_made(monkeypatch):
+    """Frequencies up to the bound of Gershgorin, sqrt(4 k/m) in a chain, stand for the spectrum; three full matrices of
+    4000 bodies took half a gigabyte."""
+    n, seen = 600, []
+    bodies = [fm.Body(f"b{i}", mass=2.0) for i in range(n)]
+    springs = [fm.Spring(f"k{i}", a, b, axis="x", stiffness=3.0) for i, (a, b) in enumerate(pairwise(bodies))]
+    rub = fm.Contact("rub", bodies[0], law=fm.laws.Coulomb(mu_s=0.3), normal_force=1.0)
+    monkeypatch.setattr(bdf_history, "guard_of", lambda found: seen.append(found) or guard_of(found))
+    monkeypatch.setattr(bdf_history, "motion_layers", None)
+    start = {"velocity": {"b7.x": 1.0}}
+    fm.simulate(fm.Scene("chain", [*bodies, *springs, rub]), t_end=0.1, method="bdf", initial=start)
+    ((omega, decay),) = seen
+    assert omega.max() == pytest.approx(np.sqrt(4.0 * 3.0 / 2.0), rel=1e-14)
+    assert not decay.any()

@@ -13,7 +13,7 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
-from fricmb.integrate.problem import Floats, Floats2, Problem
+from fricmb.integrate.problem import Floats, Floats2
 
 MAX_ORDER = 5
 #: z = h omega of the table's columns.
@@ -71,25 +71,27 @@ def no_guard() -> BdfGuard:
 WHOLE = 256
 
 
-def spectrum(problem: Problem, M: Floats2, C: Floats2, K: Floats2) -> tuple[Floats, Floats]:
+def spectrum(M: Floats2, C: Floats2, K: Floats2) -> tuple[Floats, Floats]:
     """Frequencies and decay rates of M x'' + C x' + K x = 0, without friction.
 
     None where a stiffness has no value, as that of a root at 0: nothing oscillates about such a place.
     """
     if not (np.isfinite(K).all() and np.isfinite(C).all()):
         return np.zeros(0), np.zeros(0)
-    if problem.n > WHOLE:
-        if len(problem.omega) == problem.n:
-            return problem.omega, problem.omega * problem.zeta
-        # a bound: any frequency up to it may be there
-        top = np.sqrt((np.abs(K).sum(1) / np.diag(M)).max())
-        return np.concatenate([[0.0], top * np.geomspace(1e-4, 1.0, 256)]), np.zeros(257)
     values, shapes = np.linalg.eig(np.linalg.solve(M, K))
     try:
         damping = np.real(np.diag(np.linalg.solve(shapes, np.linalg.solve(M, C) @ shapes)))
     except np.linalg.LinAlgError:
         damping = np.zeros(len(values))
     return np.sqrt(np.maximum(values.real, 0.0)), 0.5 * np.maximum(damping, 0.0)
+
+
+def spectrum_within(mass: Floats, stiffness: Floats) -> tuple[Floats, Floats]:
+    """Frequencies up to a bound, any of which may be there undamped: masses, and sums of magnitudes of rows of K."""
+    if not np.isfinite(stiffness).all():
+        return np.zeros(0), np.zeros(0)
+    top = np.sqrt((stiffness / mass).max())
+    return np.concatenate([[0.0], top * np.geomspace(1e-4, 1.0, 256)]), np.zeros(257)
 
 
 @kernel
