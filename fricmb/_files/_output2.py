@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb._files._records import Piece, record
+from fricmb._files._records import Piece, first_mark, record
 from fricmb.errors import FileError
 
 
@@ -37,12 +37,10 @@ class Output2:
         if path.stat().st_size < 12:
             raise FileError(f"{path}: expected OUTPUT2 of Nastran, got {path.stat().st_size} bytes")
         self._data = np.memmap(path, np.uint8, "r")
-        first = self._data[:4].tobytes()
-        self._order = next((order for order in "<>" if np.frombuffer(first, order + "i4")[0] in (4, 8)), "")
+        #: Bytes of a word, and their order in it.
+        self._order, self.word = first_mark(self._data, (4, 8))
         if not self._order:
             raise FileError(f"{path}: byte 0: expected OUTPUT2 of Nastran, whose first record has 4 or 8 bytes")
-        #: Bytes of a word.
-        self.word = int(np.frombuffer(first, self._order + "i4")[0])
         self.blocks = tuple(self._blocks(list(self._keys())))
 
     def integers(self, pieces: tuple[Piece, ...]) -> Any:

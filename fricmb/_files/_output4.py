@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb._files._records import record
+from fricmb._files._records import first_mark, record
 from fricmb.errors import FileError
 
 #: Length of the first record, the head of a matrix, and the integers in it.
@@ -27,14 +27,13 @@ def op4_fits(path: Path) -> None:
     if path.stat().st_size < 4:
         return  # what is too short is told by the reader
     data = np.memmap(path, np.uint8, "r")
-    lengths = {int(np.frombuffer(data[:4].tobytes(), order + "i4")[0]): order for order in "<>"}
-    head = next((length for length in lengths if length in HEADS), 0)
-    if not head:
+    order, head = first_mark(data, HEADS)
+    if not order:
         return  # text, or what the reader refuses
-    kind = lengths[head] + HEADS[head]
+    kind = order + HEADS[head]
     at, columns, in_pieces = 0, 0, False
     while at < data.size:
-        start, length = record(path, data, at, lengths[head])
+        start, length = record(path, data, at, order)
         words = np.frombuffer(data[start : start + length // 4 * 4].tobytes(), kind, length // np.dtype(kind).itemsize)
         if not columns:  # a head: columns, rows, form, kind, name
             if length != head:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,15 @@ from fricmb.errors import FileError
 
 #: First byte and length of a piece of a record.
 Piece = tuple[int, int]
+
+
+def first_mark(data: Any, lengths: Collection[int]) -> tuple[str, int]:
+    """Order of the bytes by which the first number is one of ``lengths``, and the number; an empty order if by none."""
+    for order in "<>":
+        length = int(np.frombuffer(data[:4].tobytes(), order + "i4")[0])
+        if length in lengths:
+            return order, length
+    return "", 0
 
 
 def record(path: Path, data: Any, at: int, order: str) -> Piece:

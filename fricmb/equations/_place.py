@@ -113,10 +113,10 @@ def _is_sound(integral: Any, value: Any, t: Any) -> bool:
     with mpmath.workdps(60):
         for place in [*PLACES, *(float(centre) for centre in quick if centre.is_real)]:
             try:
-                rate = given(mpmath.mpf(place))
+                speed = given(mpmath.mpf(place))
                 pairs.append((in_doubles(place), exact(mpmath.mpf(place))))
-                pairs.append((slope(mpmath.mpf(place)), rate))
-                moved.extend((4.0 * EPS * abs(place * rate), 0.0))
+                pairs.append((slope(mpmath.mpf(place)), speed))
+                moved.extend((4.0 * EPS * abs(place * speed), 0.0))
             except (NameError, TypeError, ValueError, ZeroDivisionError, OverflowError):
                 return False
     if not all(mpmath.isfinite(x) and mpmath.im(x) == 0 for pair in pairs for x in pair):

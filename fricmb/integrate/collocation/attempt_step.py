@@ -25,6 +25,7 @@ from fricmb.integrate.step.contact_newton import solve_ports
 from fricmb.integrate.step.one_step import newton_tolerances
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
 from fricmb.integrate.step.stage_predictor import contacts_from_start
+from fricmb.integrate.step.step_control import or_reached
 
 
 @kernel
@@ -38,17 +39,13 @@ def held_at_rest(packed: Packed, y: State, one: OneStep, i: int) -> float:
     return push
 
 
-#: Part of the velocity reached in a step below which what was known before it is no measure.
-LEFT_BEHIND = 1e-3
-
-
 @kernel
 def begins_within(y: State, one: OneStep, acc: Accuracy, h: float) -> bool:
     """Whether a velocity reached in the step just solved is far above all that was known of it before."""
     found = False
     for i in range(y.q.shape[0]):
         known = max(acc.v[i], abs(y.v[i]), acc.floor_v[i], h * abs(y.a[i]))
-        found = found or known < LEFT_BEHIND * abs(y.v[i] + one.exact.end[1, i])
+        found = found or or_reached(known, y.v[i] + one.exact.end[1, i]) > known
     return found
 
 
@@ -67,8 +64,7 @@ def weigh_inputs(packed: Packed, y: State, one: OneStep, acc: Accuracy, h: float
         if scale <= max(2.0 * acc.floor_v[i], 1e-10 * top):
             scale = max(scale, h * held_at_rest(packed, y, one, i))
         if solved:
-            reached = abs(y.v[i] + ex.end[1, i])
-            scale = reached if scale < LEFT_BEHIND * reached else scale
+            scale = or_reached(scale, y.v[i] + ex.end[1, i])
         one.scale[i] = scale
     for c in range(ex.b1.shape[0]):
         worst = 0.0

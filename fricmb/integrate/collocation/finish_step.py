@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from fricmb.integrate.collocation.attempt_step import LEFT_BEHIND
 from fricmb.integrate.collocation.block_motion import two_sum
 from fricmb.integrate.collocation.motion_in_step import is_stiff, stiff_nodes
 from fricmb.integrate.collocation.powers_in_step import node_powers, powers_on_motion
@@ -24,6 +23,7 @@ from fricmb.integrate.step.force_jumps import jump_error
 from fricmb.integrate.step.one_step import update_port_scales
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
 from fricmb.integrate.step.slip_growth import growth, too_long
+from fricmb.integrate.step.step_control import or_reached
 from fricmb.integrate.step.step_error import state_error, unseen_by_nodes
 from fricmb.integrate.step.weigh_forces import weigh_forces
 
@@ -101,8 +101,7 @@ def visible(y: State, one: OneStep, acc: Accuracy, j: int, h: float) -> float:
         size += abs(ex.v_u[i, j]) / max(rate, 1e-290)
         if size > 0.0:
             scale = max(acc.v[i], abs(y.v[i]), abs(y.a[i]) * h, acc.floor_v[i], 1e-10 * top, 1e-290)
-            reached = abs(y.v[i] + ex.end[1, i])
-            scale = reached if scale < LEFT_BEHIND * reached else scale
+            scale = or_reached(scale, y.v[i] + ex.end[1, i])
             most = max(most, size / scale)
     return most
 

@@ -163,7 +163,7 @@ def scaled(y: State, c: Control, past: Differences, formula: Formula, error: Flo
 def update(past: Differences, formula: Formula) -> None:
     """Bring the differences to the end of the step, whose correction is ``d``."""
     for i in range(past.D.shape[1]):
-        bring_forward(past, i, 0)
+        bring_forward(past, i)
     count_step(past)
     for i in range(formula.reach.shape[0]):
         formula.reach[i] = max(formula.reach[i], abs(past.D[0, i] - formula.origin[i]))

@@ -20,6 +20,7 @@ from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.law_values import smooth_force
 from fricmb.integrate.problem import STICK, Floats, Floats2, Ints, Problem
 from fricmb.integrate.step.slow_slip import line_at
+from fricmb.integrate.step.step_control import or_reached
 from fricmb.integrate.step.tableau import by_line, largest_in_step
 
 
@@ -254,10 +255,6 @@ def has_joints(y: State) -> bool:
     return bool(y.lam.shape[0] > 0)
 
 
-#: Part of the velocity reached within a step below which what was known before it is no measure.
-LEFT_BEHIND = 1e-3
-
-
 @kernel
 def error_of(c: Control, y: State, st: Stages, h: float) -> float:
     """Estimated error of velocities, positions and states within the step, over the tolerance.
@@ -267,9 +264,8 @@ def error_of(c: Control, y: State, st: Stages, h: float) -> float:
     """
     last, tab = 0.0, st.tab
     for i in range(y.v.shape[0]):
-        size, reached = st.scale[i], largest_in_step(y.v[i], st.V, i)
-        if size < LEFT_BEHIND * reached:  # a load has just passed the cone, and the acceleration was still 0 there
-            size = reached
+        # where a load has just passed the cone the acceleration was still 0
+        size = or_reached(st.scale[i], largest_in_step(y.v[i], st.V, i))
         high = abs(by_line(tab.top[0], y.v[i], st.V, i)) / size
         # a position that has only begun to move is measured by what its velocity brings within the step
         size = max(c.q[i], largest_in_step(y.q[i], st.Q, i), h * size)

@@ -169,13 +169,14 @@ def _longest_step(problem: Problem, span: float) -> float:
 def _settle(workspace: RunWorkspace, problem: Problem, start: Start, t_end: float, shortest: float) -> None:
     """What counts as 1, and the first step, from what is found at the start; ``shortest`` time inputs tell apart."""
     y, out, c = workspace.y, workspace.out, workspace.control
-    load, pushed = _load(mechanism_of(problem), y), 0.0 if np.any(y.v) else _largest_push(problem, start.t, t_end)
-    if not np.any(y.v) and (c.mass * np.abs(y.a)).max(initial=0.0) <= max(ROUND_OFF * max(load, pushed), NOTHING):
-        brief = 10.0 * shortest * pushed / c.mass.max() if pushed > 0.0 else 0.0
-        slip = max(float(np.abs(y.g).max(initial=0.0)), brief)
-        to_come = _speeds_to_come(problem, start, t_end, (load, pushed), c.mass, slip)
-        c.floor_v[:] = np.maximum(c.floor_v, to_come)
-        out.top_slip = max(out.top_slip, _slip_by(problem, start, to_come)[0])
+    if not np.any(y.v):
+        load, pushed = _load(mechanism_of(problem), y), _largest_push(problem, start.t, t_end)
+        if (c.mass * np.abs(y.a)).max(initial=0.0) <= max(ROUND_OFF * max(load, pushed), NOTHING):
+            brief = 10.0 * shortest * pushed / c.mass.max() if pushed > 0.0 else 0.0
+            slip = max(float(np.abs(y.g).max(initial=0.0)), brief)
+            to_come = _speeds_to_come(problem, start, t_end, (load, pushed), c.mass, slip)
+            c.floor_v[:] = np.maximum(c.floor_v, to_come)
+            out.top_slip = max(out.top_slip, _slip_by(problem, start, to_come)[0])
     weight = np.sqrt(c.mass)
     omega = float(np.max(problem.omega, initial=0.0))
     c.h = first_step(weight * y.v, weight * y.a, t_end - start.t, PART, omega)

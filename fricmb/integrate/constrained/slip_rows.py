@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.forces import (
@@ -152,18 +154,29 @@ def add_slip(
         add_form(mech, k, L, row, table, a0 + a, value * turn)
 
 
+@kernel
+def forms_of_slip(mech: Mech, k: Moving, c: int, direction: int, lam: Floats) -> tuple[Any, int, int, int]:
+    """Where the slip velocity of port c in a direction stands: table, first form, how many, and their factors in k.out.
+
+    Those of a joint, which is called for them, have factors; a port has one form of its own.
+    """
+    j = mech.port.joint[c]
+    table, first, n_x, at = mech.port.slip, mech.port.slip.x_start[c] + 2 * direction, 1, 0
+    if j >= 0:
+        n_x = call_joint(mech, k, j, lam)
+        table, first = mech.joint.table, mech.joint.table.x_start[j]
+        at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j]) + direction * n_x
+    return table, first, n_x, at
+
+
 @block
 def lightness(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, mass: Floats) -> float:
     """Change of the slip velocity of port c by a unit force in its direction, were there no (other) joints.
 
     With other values (n,) than the masses: the sum of squares of slopes over these.
     """
-    port, place, j = mech.port, mech.place, mech.port.joint[c]
-    table, first, n_x, at = port.slip, port.slip.x_start[c] + 2 * direction, 1, 0
-    if j >= 0:
-        n_x = call_joint(mech, k, j, lam)
-        table, first = mech.joint.table, mech.joint.table.x_start[j]
-        at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j]) + direction * n_x
+    place, j = mech.place, mech.port.joint[c]
+    table, first, n_x, at = forms_of_slip(mech, k, c, direction, lam)
     value = 0.0
     for form in range(first, first + n_x):
         factor = k.out[at + form - first] if j >= 0 else 1.0
@@ -180,12 +193,8 @@ def lightness(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, mass: 
 @kernel
 def slip_gradient(mech: Mech, k: Moving, c: int, direction: int, lam: Floats, out: Floats) -> None:
     """Derivatives of the slip velocity of port c in a direction by all velocities, into out (n,)."""
-    port, place, j = mech.port, mech.place, mech.port.joint[c]
-    table, first, n_x, at = port.slip, port.slip.x_start[c] + 2 * direction, 1, 0
-    if j >= 0:
-        n_x = call_joint(mech, k, j, lam)
-        table, first = mech.joint.table, mech.joint.table.x_start[j]
-        at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j]) + direction * n_x
+    place, j = mech.place, mech.port.joint[c]
+    table, first, n_x, at = forms_of_slip(mech, k, c, direction, lam)
     out[:] = 0.0
     for form in range(first, first + n_x):
         factor = k.out[at + form - first] if j >= 0 else 1.0

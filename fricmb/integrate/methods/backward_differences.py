@@ -110,12 +110,12 @@ def predict(past: Differences) -> None:
 
 
 @kernel
-def bring_forward(past: Differences, i: int, last: int) -> None:
-    """Bring the differences of signal i, from the order down to ``last``, to the end of the step corrected by ``d``."""
+def bring_forward(past: Differences, i: int) -> None:
+    """Bring the differences of signal i to the end of the step corrected by ``d``."""
     k = past.order
     past.D[k + 2, i] = past.d[i] - past.D[k + 1, i]
     past.D[k + 1, i] = past.d[i]
-    for j in range(k, last - 1, -1):
+    for j in range(k, -1, -1):
         past.D[j, i] += past.D[j + 1, i]
 
 

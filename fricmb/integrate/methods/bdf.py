@@ -20,8 +20,8 @@ class Bdf(Integrator):
     """BDF of order 1 to 5 for the implicit index-1 DAE of motion and contact.
 
     Every transition is located; around transitions, at starts and near landing Radau IIA of ``stages`` stages
-    steps, and wherever it gets on faster.  Every step is one of it at smooth laws without joints and, in scenes of few
-    contacts, beside elements whose forces bend or jump.
+    steps, and wherever it gets on faster.  Radau IIA takes every step where a law is smooth and there are no joints,
+    and in scenes of few contacts with elements whose forces bend or jump.
     The spectrum limits the order at a step size where a lightly damped oscillation would grow.
     Bodies that turn and joints are run on the index-reduced system, with constraints restored after every step.
 

@@ -41,6 +41,17 @@ def first_step(v: Floats, a: Floats, span: float, part: float, omega: float = 0.
     return float(max(h, 1e-12 * span))
 
 
+#: Part of the velocity reached within a step below which what was known before it is no measure.
+LEFT_BEHIND = 1e-3
+
+
+@kernel
+def or_reached(size: float, velocity: float) -> float:
+    """What a velocity is measured by: the ``size`` known before a step, or, where that is nothing, what it reaches."""
+    reached = abs(velocity)
+    return float(reached if size < LEFT_BEHIND * reached else size)
+
+
 @kernel
 def step_factor(error: float, order: float, safety: float) -> float:
     """By what a step may grow, or has to shrink, where its error over the tolerance is ``error`` and goes with h^order.
