@@ -9,6 +9,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.blocks_of_mechanism import load_mechanism
+from fricmb.integrate.constrained.dense_rows import DenseRows, dense_rows
 from fricmb.integrate.constrained.loop_softness import shares_a_loop, softness
 from fricmb.integrate.constrained.pattern import of_pattern
 from fricmb.integrate.constrained.structure import mechanism_of
@@ -131,6 +132,7 @@ class Mech(Layout):
     bends: Table
     bend_start: Ints
     group: Ints
+    dense: DenseRows
 
 
 @kernel
@@ -184,7 +186,7 @@ def _pack(problem: Problem) -> Mech:
         linear, places, joint, port, table_of(problem.signals.table), table_of(problem.elements.table),
         spread_of(problem), Order(found.place, sizes),
         np.sort(np.asarray(problem.signals.breakpoints, float)), masses(m), table_of(problem.bends.table),
-        solid(problem.bends.start, np.int64), found.group,
+        solid(problem.bends.start, np.int64), found.group, dense_rows(problem, m),
     ))  # fmt: skip
 
 

@@ -13,6 +13,7 @@ from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.near_rest import choose_forms, prepare_steep, prepare_turns
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_positions, project_velocities
+from fricmb.integrate.constrained.series_step import serves, solve_by_series
 from fricmb.integrate.constrained.slip_rows import aim, keep_held, lightness
 from fricmb.integrate.constrained.stage_newton import iterate_stages
 from fricmb.integrate.constrained.stages import Stages, bring_up_to_date, empty_slot, factor_stages, linearise, slot_for
@@ -224,7 +225,12 @@ def solve_stages(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: flo
 
 @block
 def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) -> bool:
-    """As ``solve_stages``; where factors of another step do not get there, by its own."""
+    """As ``solve_stages``; where factors of another step do not get there, by its own; by a series where there is one."""
+    if serves(mech):
+        measure(mech, c, y, h, st.scale)
+        if solve_by_series(mech, k, y, st, h, KAPPA * asked(c)):
+            c.counts[2] += st.tab.c.shape[0]
+            return True
     if solve_stages(mech, k, y, st, c, h):
         return True
     if c.made == 0.0 or c.made == h:

@@ -18,6 +18,7 @@ from fricmb.integrate.compile.band import factor_band, length_of, solve_band
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.constrained.dense_rows import has_dense_rows
 from fricmb.integrate.constrained.forces import forces, move, pull_back
 from fricmb.integrate.constrained.friction_rows import add_friction, friction_residual
 from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_contacts, add_joints, add_mass, add_structure
@@ -35,11 +36,57 @@ from fricmb.integrate.problem import (
     Complexes3,
     Floats,
     Floats2,
+    Ints,
     Pivots,
     Problem,
 )
 from fricmb.integrate.step.felt import Felt, felt_of
 from fricmb.integrate.step.tableau import Tableau
+
+
+class Series(Layout):
+    """Terms of a Taylor series over ``length`` from ``begin`` on, ``terms`` of them (0: there is none), in t/length.
+
+    ``x`` (., n) of positions, ``path`` (., r) of rows (see ``dense_rows``), ``N``, ``F``, ``g`` of loads, friction and
+    slip velocities; ``u`` (s+1, 2 n_u) of signals and their rates, by values ``signal`` at 0, c.  ``along`` (n_c,) modes
+    as numbers, ``mu`` coefficients; ``held`` the first ``count`` rows that stick, ``mobility`` factors of theirs,
+    ``side`` a side of equations with it; ``f``, ``acc`` (n,) space.
+    """
+
+    begin: float
+    length: float
+    terms: int
+    count: int
+    x: Floats2
+    path: Floats2
+    N: Floats2
+    F: Floats2
+    g: Floats2
+    u: Floats2
+    signal: Floats2
+    along: Floats
+    mu: Floats
+    held: Ints
+    mobility: Floats2
+    side: Floats
+    f: Floats
+    acc: Floats
+
+
+#: Terms of a series at most.
+TERMS = 40
+
+
+def series_of(problem: Problem, stages: int) -> Series:
+    """Space for the series of a problem with dense rows; of any other one none."""
+    some = has_dense_rows(problem, mechanism_of(problem))
+    n, rows, n_u = (problem.n, problem.m, problem.n_u) if some else (0, 0, 0)
+    terms = TERMS if some else 0
+    return Series(
+        0.0, 0.0, 0, 0, np.zeros((terms + 2, n)), np.zeros((terms + 2, 2 * rows)), *np.zeros((3, terms, rows)),
+        np.zeros((stages + 1, 2 * n_u)), np.zeros((stages + 1, 2 * n_u)), np.zeros(rows), np.zeros(rows),
+        np.zeros(rows, np.int64), np.zeros((rows, rows)), np.zeros(rows), np.zeros(n), np.zeros(n),
+    )  # fmt: skip
 
 
 class Stages(Layout):
@@ -51,7 +98,7 @@ class Stages(Layout):
     ``Ainv`` (s, s) inverse of the tableau; ``scale`` (n,) what counts as 1 in velocities; ``found`` the rate of
     convergence; ``turns`` for contacts in two directions; ``steep`` for smooth laws; ``felt`` what forces of
     ports do in the step just solved; ``fresh`` 1 where N and g are those of the values there, but for a change that is
-    nothing; ``plain`` 1 where friction alone is not linear, and its loads are given.
+    nothing; ``plain`` 1 where friction alone is not linear, and its loads are given; ``series`` where steps have one.
     """
 
     tab: Tableau
@@ -82,6 +129,7 @@ class Stages(Layout):
     felt: Felt
     fresh: int
     plain: int
+    series: Series
 
 
 #: Steps whose factors are kept at most, and bytes for them: without joints a ladder of steps comes back to the same.
@@ -104,7 +152,7 @@ def stages_of(problem: Problem, tab: Tableau) -> Stages:
         np.zeros(size),
         np.zeros((count, size), complex), np.zeros(size, complex), np.zeros((s, nz)), np.zeros(size), np.ones(m.n), 0.0,
         turns_of(problem, tab, size), steep_laws_of(problem, tab, m.n, size), felt_of(problem, s), 0,
-        int(is_plain(problem)),
+        int(is_plain(problem)), series_of(problem, s),
     )  # fmt: skip
 
 
@@ -122,7 +170,7 @@ def facts_of(problem: Problem) -> tuple[Any, ...]:
     """What stages say of a problem beside the lengths of their arrays: they serve none of which it differs."""
     contacts = problem.contacts
     rows = (contacts.law == LAW_SMOOTH).tobytes(), contacts.row.tobytes(), contacts.z_start.tobytes()
-    return is_plain(problem), *rows
+    return is_plain(problem), has_dense_rows(problem, mechanism_of(problem)), *rows
 
 
 @block
