@@ -6,12 +6,14 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.constrained.dense_rows import put_path
 from fricmb.integrate.constrained.forces import (
     bend,
     call_joint,
     directions,
     forces,
     friction_at,
+    has_dense_rows,
     move,
     pull_back,
     slope_at,
@@ -80,6 +82,23 @@ def constraint_acceleration(mech: Mech, k: Moving, lam: Floats, r: Floats, r0: i
             r[r0 + joint.row[j] + i] = value
 
 
+@kernel
+def slip_accelerations(mech: Mech, k: Moving, y: State) -> None:
+    """Derivatives of all slip velocities, the second derivatives in ``ddy`` being complete, into ``y.ga``."""
+    if has_dense_rows(mech):
+        dense = mech.dense
+        put_path(dense.of, k.ddy, k.rows[0])
+        for a in range(y.ga.shape[0]):
+            y.ga[a] = k.rows[0, a]
+            for b in range(k.s.ddu.shape[0]):
+                y.ga[a] += dense.by_u[a, b] * k.s.ddu[b]
+        return
+    row = mech.port.row
+    for c in range(y.mode.shape[0]):
+        for a in range(row[c + 1] - row[c]):
+            y.ga[row[c] + a] = slip_acceleration(mech, k, c, y.lam, a)
+
+
 @block
 def instant_residual(mech: Mech, k: Moving, w: Instant, y: State) -> None:
     """Residual of motion, constraints and friction at the instant for the present a, lam, F into ``w.r``."""
@@ -93,10 +112,7 @@ def instant_residual(mech: Mech, k: Moving, w: Instant, y: State) -> None:
         w.ddy[e] = k.ddy[e]
     accelerations_of_places(mech, k, y.a)
     constraint_acceleration(mech, k, y.lam, w.r, n)
-    row = mech.port.row
-    for c in range(y.mode.shape[0]):
-        for a in range(row[c + 1] - row[c]):
-            y.ga[row[c] + a] = slip_acceleration(mech, k, c, y.lam, a)
+    slip_accelerations(mech, k, y)
     for e in range(k.ddy.shape[0]):
         k.ddy[e] = w.ddy[e]
     friction_residual(mech, k, y.mode, y.n, y.F, y.z, y.N, y.g, y.ga, y.zd, w.r, n + m, False)

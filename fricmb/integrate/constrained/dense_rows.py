@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.compile.long_loops import long_loops
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.model.table_values import evaluate
 from fricmb.integrate.once_per import once_per
@@ -31,6 +33,28 @@ class DenseRows(Layout):
     damp: Floats
     inverse: Floats
     mobility: Floats2
+
+
+@block
+@long_loops
+def put_path(of: Floats2, x: Floats, out: Floats) -> None:
+    """``of' x``, column by column."""
+    out[:] = 0.0
+    for i in range(x.shape[0]):
+        share, line = x[i], of[i]
+        for a in range(out.shape[0]):
+            out[a] += share * line[a]
+
+
+@block
+@long_loops
+def add_forces(on: Floats2, force: Floats, f: Floats) -> None:
+    """Add forces (r,) along all rows."""
+    for a in range(force.shape[0]):
+        if force[a] != 0.0:
+            share, line = force[a], on[a]
+            for i in range(f.shape[0]):
+                f[i] += share * line[i]
 
 
 #: Rows of contacts from which on dense ones pay, and the part of them that is not 0; numbers in a matrix of them.

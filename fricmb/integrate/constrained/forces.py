@@ -5,6 +5,7 @@ from __future__ import annotations
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
+from fricmb.integrate.constrained.dense_rows import add_forces, put_path
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.model.forces import element_forces, evaluate, gather, set_time
@@ -285,9 +286,41 @@ def contact_slip(mech: Mech, k: Moving, g: Floats) -> None:
 
 
 @kernel
+def has_dense_rows(mech: Mech) -> bool:
+    """Whether the scene is one of many dense rows."""
+    return bool(mech.dense.inverse.shape[0] > 0)
+
+
+@kernel
+def dense_contact_forces(mech: Mech, k: Moving, F: Floats, N: Floats, g: Floats) -> None:
+    """The same by dense rows."""
+    dense, port, X = mech.dense, mech.port, k.s.X
+    n, n_u, m = k.ddy.shape[0], k.s.ddu.shape[0], F.shape[0]
+    put_path(dense.of, X[1 : 1 + n], k.rows[0])
+    put_path(dense.of, X[1 + n : 1 + 2 * n], k.rows[1])
+    for a in range(m):
+        slip, e, rate = k.rows[1, a] + dense.offset[a], k.rows[0, m + a], k.rows[1, m + a]
+        for b in range(n_u):
+            u, du = X[1 + 2 * n + b], X[1 + 2 * n + n_u + b]
+            slip += dense.by_u[a, b] * du
+            e += dense.by_u[m + a, b] * u
+            rate += dense.by_u[m + a, b] * du
+        g[a] = slip
+        N[a] = dense.offset[m + a] + dense.stiff[a] * e + dense.damp[a] * rate
+        push = max(N[a], 0.0) - port.N0[a] if port.normal[a] == NORMAL_LAW else 0.0
+        for b in range(n_u):
+            k.fu[b] += F[a] * dense.by_u[a, b] + push * dense.by_u[m + a, b]
+        k.rows[0, a], k.rows[0, m + a] = F[a], push
+    add_forces(dense.on, k.rows[0], k.fy)
+
+
+@kernel
 def contact_forces(mech: Mech, k: Moving, F: Floats, N: Floats, g: Floats) -> None:
     """Friction of contacts that are no joints, and what normal-force laws press with."""
     port = mech.port
+    if has_dense_rows(mech):
+        dense_contact_forces(mech, k, F, N, g)
+        return
     for c in range(port.joint.shape[0]):
         if port.joint[c] >= 0:
             continue

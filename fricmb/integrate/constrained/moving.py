@@ -11,7 +11,7 @@ from fricmb.integrate.constrained.pattern import of_pattern
 from fricmb.integrate.constrained.problem_structs import mech_of
 from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.model.forces import Scratch, scratch_of
-from fricmb.integrate.problem import Codes, Floats, Problem
+from fricmb.integrate.problem import Codes, Floats, Floats2, Problem
 
 
 class Moving(Layout):
@@ -31,6 +31,7 @@ class Moving(Layout):
     joints block open; else what slip may change by in the step;
     ``answer`` (m_p,) changes of slip velocities by unit forces there, joints holding, of the instant at which modes are
     being decided; below 0: not known;
+    ``rows`` (2, .) what dense rows make of positions and velocities;
     ``way`` (m_p,) the motion in which contacts in loops give way, ``looped`` (n_c,) 1 of those that cannot slip alone.
     """
 
@@ -57,6 +58,7 @@ class Moving(Layout):
     answer: Floats
     way: Floats
     looped: Codes
+    rows: Floats2
 
 
 class Lengths(NamedTuple):
@@ -99,4 +101,5 @@ def moving_of(problem: Problem) -> Moving:
         np.zeros(m.n_rows), np.zeros(m.n_rows), np.zeros(problem.n_c, np.int8),
         np.zeros(problem.n_c), 1.0, 1.0, 0.0, 0, 0.0, 0.0, np.zeros(problem.n_c),
         np.zeros(problem.m), np.zeros(problem.m), np.zeros(problem.n_c, np.int8),
+        np.zeros((2, problem.m + problem.n_c)),
     )  # fmt: skip

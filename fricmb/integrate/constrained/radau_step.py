@@ -8,12 +8,12 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.constrained.accelerations import powers, react
-from fricmb.integrate.constrained.forces import forces, forces_on_signals, move
+from fricmb.integrate.constrained.forces import forces, forces_on_signals, has_dense_rows, move
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.near_rest import choose_forms, prepare_steep, prepare_turns
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_positions, project_velocities
-from fricmb.integrate.constrained.series_step import serves, solve_by_series
+from fricmb.integrate.constrained.series_step import solve_by_series
 from fricmb.integrate.constrained.slip_rows import aim, keep_held, lightness
 from fricmb.integrate.constrained.stage_newton import iterate_stages
 from fricmb.integrate.constrained.stages import Stages, bring_up_to_date, empty_slot, factor_stages, linearise, slot_for
@@ -226,7 +226,7 @@ def solve_stages(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: flo
 @block
 def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) -> bool:
     """As ``solve_stages``; where factors of another step do not get there, by its own; by a series where there is one."""
-    if serves(mech):
+    if has_dense_rows(mech):
         measure(mech, c, y, h, st.scale)
         if solve_by_series(mech, k, y, st, h, KAPPA * asked(c)):
             c.counts[2] += st.tab.c.shape[0]

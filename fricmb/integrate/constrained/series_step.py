@@ -19,7 +19,8 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.compile.long_loops import long_loops
+from fricmb.integrate.constrained.dense_rows import add_forces, put_path
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import friction_coefficient, guided
@@ -34,12 +35,6 @@ GROWN = 1e3
 REST = 1e-3
 #: Round-off of the last terms.
 FINEST = 1e-17
-
-
-@kernel
-def serves(mech: Mech) -> bool:
-    """Whether the scene is one of many dense rows."""
-    return bool(mech.dense.inverse.shape[0] > 0)
 
 
 @kernel
@@ -135,24 +130,6 @@ def solve_mobility(st: Stages) -> None:
 
 
 @kernel
-def put_path(of: Floats2, x: Floats, out: Floats) -> None:
-    """``of' x``, column by column."""
-    out[:] = 0.0
-    for i in range(x.shape[0]):
-        share, line = x[i], of[i]
-        for a in range(out.shape[0]):
-            out[a] += share * line[a]
-
-
-@kernel
-def add_row(on: Floats2, a: int, force: float, f: Floats) -> None:
-    """Add a force along row a."""
-    line = on[a]
-    for i in range(f.shape[0]):
-        f[i] += force * line[i]
-
-
-@kernel
 def put_structure(mech: Mech, st: Stages, j: int, h: float) -> None:
     """Term j of the forces of the linear structure into ``series.f``."""
     se, linear = st.series, mech.linear
@@ -193,15 +170,11 @@ def put_contacts(mech: Mech, y: State, st: Stages, j: int, h: float) -> None:
         if j == 0:
             slip += dense.offset[a]
             load += dense.offset[m + a]
-        se.g[j, a], se.N[j, a], se.F[j, a] = slip, load, 0.0
-        if port.normal[a] == NORMAL_LAW:
-            push = (0.0 if y.mode[a] == OPEN else load) - (port.N0[a] if j == 0 else 0.0)
-            if push != 0.0:
-                add_row(dense.on, m + a, push, se.f)
-        if y.mode[a] == SLIP:
-            se.F[j, a] = -y.n[a] * se.mu[a] * load
-            if se.F[j, a] != 0.0:
-                add_row(dense.on, a, se.F[j, a], se.f)
+        se.g[j, a], se.N[j, a] = slip, load
+        se.F[j, a] = -y.n[a] * se.mu[a] * load if y.mode[a] == SLIP else 0.0
+        push = (0.0 if y.mode[a] == OPEN else load) - (port.N0[a] if j == 0 else 0.0)
+        se.force[a], se.force[m + a] = se.F[j, a], push if port.normal[a] == NORMAL_LAW else 0.0
+    add_forces(dense.on, se.force, se.f)
 
 
 @kernel
@@ -211,18 +184,18 @@ def hold(mech: Mech, st: Stages, j: int, h: float) -> None:
     n_u = se.u.shape[1] // 2
     for i in range(se.f.shape[0]):
         se.acc[i] = dense.inverse[i] * se.f[i]
+    put_path(dense.of, se.acc, se.force)
     for i in range(se.count):
         a = se.held[i]
-        line, value = dense.on[a], 0.0
-        for b in range(line.shape[0]):
-            value += line[b] * se.acc[b]
+        value = se.force[a]
         for b in range(n_u if j + 1 < se.u.shape[0] else 0):
             value += dense.by_u[a, b] * (j + 1.0) / h * se.u[j + 1, n_u + b]
         se.side[i] = -value
     solve_mobility(st)
+    se.force[:] = 0.0
     for i in range(se.count):
-        se.F[j, se.held[i]] = se.side[i]
-        add_row(dense.on, se.held[i], se.side[i], se.f)
+        se.F[j, se.held[i]] = se.force[se.held[i]] = se.side[i]
+    add_forces(dense.on, se.force, se.f)
 
 
 @kernel
@@ -284,6 +257,7 @@ def sum_rates(x: Floats2, order: int, count: int, at: float, h: float, out: Floa
 
 
 @block
+@long_loops
 def solve_by_series(mech: Mech, k: Moving, y: State, st: Stages, h: float, accuracy: float) -> bool:
     """Values at the stages of a step h from y by the series of its modes; False where it has none that is good enough.
 

@@ -50,7 +50,7 @@ class Series(Layout):
     ``x`` (., n) of positions, ``path`` (., r) of rows (see ``dense_rows``), ``N``, ``F``, ``g`` of loads, friction and
     slip velocities; ``u`` (s+1, 2 n_u) of signals and their rates, by values ``signal`` at 0, c.  ``along`` (n_c,) modes
     as numbers, ``mu`` coefficients; ``held`` the first ``count`` rows that stick, ``mobility`` factors of theirs,
-    ``side`` a side of equations with it; ``f``, ``acc`` (n,) space.
+    ``side`` a side of equations with it; ``force`` (r,) along rows; ``f``, ``acc`` (n,) space.
     """
 
     begin: float
@@ -69,6 +69,7 @@ class Series(Layout):
     held: Ints
     mobility: Floats2
     side: Floats
+    force: Floats
     f: Floats
     acc: Floats
 
@@ -85,7 +86,8 @@ def series_of(problem: Problem, stages: int) -> Series:
     return Series(
         0.0, 0.0, 0, 0, np.zeros((terms + 2, n)), np.zeros((terms + 2, 2 * rows)), *np.zeros((3, terms, rows)),
         np.zeros((stages + 1, 2 * n_u)), np.zeros((stages + 1, 2 * n_u)), np.zeros(rows), np.zeros(rows),
-        np.zeros(rows, np.int64), np.zeros((rows, rows)), np.zeros(rows), np.zeros(n), np.zeros(n),
+        np.zeros(rows, np.int64), np.zeros((rows, rows)), np.zeros(rows), np.zeros(2 * rows), np.zeros(n),
+        np.zeros(n),
     )  # fmt: skip
 
 
