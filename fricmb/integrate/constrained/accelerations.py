@@ -6,25 +6,23 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.dense_rows import put_path
 from fricmb.integrate.constrained.forces import (
     bend,
     call_joint,
-    directions,
     forces,
-    friction_at,
     has_dense_rows,
     move,
     pull_back,
-    slope_at,
 )
 from fricmb.integrate.constrained.friction_rows import friction_residual
+from fricmb.integrate.constrained.held_rows import react_at_rows
 from fricmb.integrate.constrained.instant_matrix import ALL, instant_matrix, solve_instant
 from fricmb.integrate.constrained.jacobian_layers import place_slope
 from fricmb.integrate.constrained.load_share import share_load
 from fricmb.integrate.constrained.loop_mobility import may_share
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
+from fricmb.integrate.constrained.slip_accelerations import slip_accelerations
 from fricmb.integrate.constrained.slip_rows import SETTING_OUT
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.forces import element_powers, evaluate
@@ -51,22 +49,6 @@ def mass_times(mech: Mech, a: Floats, r: Floats, n: int) -> None:
 
 
 @kernel
-def slip_acceleration(mech: Mech, k: Moving, c: int, lam: Floats, a: int) -> float:
-    """Derivative of the slip velocity of port c in direction a, the second derivatives in ``ddy`` being complete."""
-    j = mech.port.joint[c]
-    if j < 0:
-        return bend(k, mech.port.slip, mech.port.slip.x_start[c] + 2 * a)
-    n_x = call_joint(mech, k, j, lam)
-    at = friction_at(n_x, mech.joint.row[j + 1] - mech.joint.row[j])
-    value, d = 0.0, directions(mech, c)
-    for i in range(n_x):
-        value += k.out[at + a * n_x + i] * bend(k, mech.joint.table, mech.joint.table.x_start[j] + i)
-        for b in range(n_x):
-            value += k.out[slope_at(n_x, at, d, a, i) + b] * k.x[n_x + i] * k.x[n_x + b]
-    return value
-
-
-@kernel
 def constraint_acceleration(mech: Mech, k: Moving, lam: Floats, r: Floats, r0: int) -> None:
     """Second derivatives of the constraints into r[r0:], those of the extended coordinates being in ``ddy``."""
     joint = mech.joint
@@ -80,23 +62,6 @@ def constraint_acceleration(mech: Mech, k: Moving, lam: Floats, r: Floats, r0: i
                 value += k.out[m + i * n_x + a] * bend(k, joint.table, joint.table.x_start[j] + a)
                 value += k.out[B + i * n_x + a] * k.x[n_x + a]
             r[r0 + joint.row[j] + i] = value
-
-
-@kernel
-def slip_accelerations(mech: Mech, k: Moving, y: State) -> None:
-    """Derivatives of all slip velocities, the second derivatives in ``ddy`` being complete, into ``y.ga``."""
-    if has_dense_rows(mech):
-        dense = mech.dense
-        put_path(dense.of, k.ddy, k.rows[0])
-        for a in range(y.ga.shape[0]):
-            y.ga[a] = k.rows[0, a]
-            for b in range(k.s.ddu.shape[0]):
-                y.ga[a] += dense.by_u[a, b] * k.s.ddu[b]
-        return
-    row = mech.port.row
-    for c in range(y.mode.shape[0]):
-        for a in range(row[c + 1] - row[c]):
-            y.ga[row[c] + a] = slip_acceleration(mech, k, c, y.lam, a)
 
 
 @block
@@ -174,15 +139,10 @@ def forget_shares(mech: Mech, y: State) -> None:
                 y.F[a] = 0.0
 
 
-@block
-def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool) -> bool:
-    """Accelerations, reactions and friction forces of the given modes; False where there are none.
-
-    ``factored``: the matrix of practically this instant is there (it serves where there is no friction).
-    """
+@kernel
+def find_reactions(mech: Mech, k: Moving, w: Instant, y: State, factored: bool) -> bool:
+    """Newton for accelerations, reactions and friction forces at X; see ``react``."""
     n, m, n_c, nz = y.q.shape[0], y.lam.shape[0], y.F.shape[0], y.z.shape[0]
-    move(mech, k, y.t, y.q, y.v)
-    forget_shares(mech, y)
     last = np.inf
     linear = is_linear(y)
     # where everything comes to rest, round-off is that of what has been
@@ -229,6 +189,20 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool) -> bool:
             break
         last = error
     else:
+        return False
+    return True
+
+
+@block
+def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool) -> bool:
+    """Accelerations, reactions and friction forces of the given modes; False where there are none.
+
+    ``factored``: the matrix of practically this instant is there (it serves where there is no friction).
+    """
+    move(mech, k, y.t, y.q, y.v)
+    forget_shares(mech, y)
+    found = has_dense_rows(mech) and react_at_rows(mech, k, y, w.held)
+    if not found and not find_reactions(mech, k, w, y, factored):
         return False
     share_load(mech, k, w, y, y.mode, y.N, y.F, y.lam, 1.0)
     # of what has been found: iterates on the way there may be anything

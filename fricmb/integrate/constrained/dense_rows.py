@@ -18,7 +18,7 @@ from fricmb.integrate.problem import LAW_CONSTANT, NORMAL_CONSTANT, NORMAL_LAW, 
 
 
 class DenseRows(Layout):
-    """Rows of slip, then of distances, r = m + n_c of them: ``of`` (n, r) by coordinates, ``on`` (r, n) the same turned.
+    """Rows of slip, then of distances, r = m + n_c of them: ``of`` (n, r) by coordinates, ``on`` (r, n) turned.
 
     Slip velocities: ``g = of' v + by_u u' + offset``.  Distances: ``e = of' q + by_u u``, and loads ``N = offset +
     stiff e + damp e'`` (``stiff``, ``damp`` (n_c,)).  ``inverse`` (n,) of the diagonal mass matrix; ``mobility`` (m, m)
@@ -121,9 +121,9 @@ def _loads(problem: Problem) -> tuple[Floats, Floats, Floats, Floats, Floats] | 
         for row in range(2):
             form = slice(int(table.form_start[x0 + row]), int(table.form_start[x0 + row + 1]))
             np.add.at(X[row], table.form_index[form], table.form_coefficient[form])
-        at = np.r_[1 : 1 + n], np.r_[1 + n : 1 + 2 * n], np.r_[1 + 2 * n : 1 + 2 * n + n_u], np.r_[1 + 2 * n + n_u : len(X[0])]
-        P[c], Pu[c] = X[0, at[0]], X[0, at[2]]
-        same = np.array_equal(P[c], X[1, at[1]]) and np.array_equal(Pu[c], X[1, at[3]])
+        distance, rate = (np.split(line[1:], (n, 2 * n, 2 * n + n_u)) for line in X)
+        P[c], Pu[c] = distance[0], distance[2]
+        same = np.array_equal(P[c], rate[1]) and np.array_equal(Pu[c], rate[3])
         if not same or np.count_nonzero(X) != 2 * np.count_nonzero(P[c]) + 2 * np.count_nonzero(Pu[c]):
             return None
         if table.form_constant[x0 + 1] != 0.0:

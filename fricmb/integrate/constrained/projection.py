@@ -6,7 +6,8 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.forces import forces, move
+from fricmb.integrate.constrained.forces import forces, has_dense_rows, move
+from fricmb.integrate.constrained.held_rows import stop_rows
 from fricmb.integrate.constrained.instant_matrix import ALL, NONE, STUCK, instant_matrix, solve_instant
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
@@ -70,6 +71,10 @@ def project_velocities(mech: Mech, k: Moving, w: Instant, y: State, factored: bo
     row = mech.port.row
     move(mech, k, y.t, y.q, y.v)
     forces(mech, k, y.lam, y.F, y.N, y.g)
+    if stuck and has_dense_rows(mech) and stop_rows(mech, k, y, w.held):
+        move(mech, k, y.t, y.q, y.v)
+        forces(mech, k, y.lam, y.F, y.N, y.g)
+        return True
     # without joints no load is a reaction: friction of what slips adds nothing that accelerations or forces bring
     friction = STUCK if m > 0 else ALL
     if not (factored and not stuck) and not instant_matrix(mech, k, w, y, friction if stuck else NONE):

@@ -225,7 +225,7 @@ def solve_stages(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: flo
 
 @block
 def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) -> bool:
-    """As ``solve_stages``; where factors of another step do not get there, by its own; by a series where there is one."""
+    """As ``solve_stages``; where factors of another step do not get there, by its own.  By a series where that does."""
     if has_dense_rows(mech):
         measure(mech, c, y, h, st.scale)
         if solve_by_series(mech, k, y, st, h, KAPPA * asked(c)):

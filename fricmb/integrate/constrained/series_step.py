@@ -15,15 +15,14 @@ such steps are left to Newton.
 
 from __future__ import annotations
 
-import numpy as np
-
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.long_loops import long_loops
 from fricmb.integrate.constrained.dense_rows import add_forces, put_path
+from fricmb.integrate.constrained.held_rows import factor_held, solve_held
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.slip_rows import friction_coefficient, guided
+from fricmb.integrate.constrained.slip_rows import friction_coefficient
 from fricmb.integrate.constrained.stages import TERMS, Stages
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.model.forces import set_time
@@ -46,10 +45,10 @@ def is_known(y: State, st: Stages, h: float) -> bool:
     for i in range(y.q.shape[0]):
         if se.x[0, i] != y.q[i] or se.x[1, i] != se.length * y.v[i]:
             return False
+    same = True
     for c in range(y.mode.shape[0]):
-        if se.along[c] != direction(y, c):
-            return False
-    return True
+        same = same and se.along[c] == direction(y, c)
+    return same
 
 
 @kernel
@@ -82,54 +81,6 @@ def put_inputs(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
 
 
 @kernel
-def factor_mobility(mech: Mech, y: State, st: Stages) -> bool:
-    """Cholesky factors of the mobility of all that sticks; False where some of it is nearly redundant."""
-    se, D = st.series, mech.dense.mobility
-    count = 0
-    for c in range(y.mode.shape[0]):
-        if y.mode[c] == STICK and not guided(mech, c, 0):
-            if mech.port.soft[c] > 0.0:
-                return False
-            se.held[count] = c
-            count += 1
-    se.count = count
-    L = se.mobility
-    for a in range(count):
-        for b in range(a + 1):
-            value = D[se.held[a], se.held[b]]
-            for i in range(b):
-                value -= L[a, i] * L[b, i]
-            if a == b:
-                if not value > REDUNDANT * D[se.held[a], se.held[a]]:
-                    return False
-                L[a, a] = np.sqrt(value)
-            else:
-                L[a, b] = value / L[b, b]
-    return True
-
-
-#: Part of its mobility that a contact which sticks must have beside those that do: forces are known to 1e-16 over it.
-REDUNDANT = 1e-9
-
-
-@kernel
-def solve_mobility(st: Stages) -> None:
-    """Forces of what sticks, in place of the accelerations that they are to take away, in ``series.side``."""
-    se = st.series
-    L, x = se.mobility, se.side
-    for a in range(se.count):
-        value = x[a]
-        for i in range(a):
-            value -= L[a, i] * x[i]
-        x[a] = value / L[a, a]
-    for a in range(se.count - 1, -1, -1):
-        value = x[a]
-        for i in range(a + 1, se.count):
-            value -= L[i, a] * x[i]
-        x[a] = value / L[a, a]
-
-
-@kernel
 def put_structure(mech: Mech, st: Stages, j: int, h: float) -> None:
     """Term j of the forces of the linear structure into ``series.f``."""
     se, linear = st.series, mech.linear
@@ -156,7 +107,7 @@ def put_structure(mech: Mech, st: Stages, j: int, h: float) -> None:
 
 @kernel
 def put_contacts(mech: Mech, y: State, st: Stages, j: int, h: float) -> None:
-    """Term j of loads and slip velocities, and of the forces of what does not stick, which are added to ``series.f``."""
+    """Term j of loads and slip velocities, and of the forces of what does not stick, added to ``series.f``."""
     se, dense, port = st.series, mech.dense, mech.port
     m, n_u, up = y.F.shape[0], se.u.shape[1] // 2, (j + 1.0) / h
     for a in range(m):
@@ -185,16 +136,17 @@ def hold(mech: Mech, st: Stages, j: int, h: float) -> None:
     for i in range(se.f.shape[0]):
         se.acc[i] = dense.inverse[i] * se.f[i]
     put_path(dense.of, se.acc, se.force)
-    for i in range(se.count):
-        a = se.held[i]
+    held = se.held
+    for i in range(held.count):
+        a = held.row[i]
         value = se.force[a]
         for b in range(n_u if j + 1 < se.u.shape[0] else 0):
             value += dense.by_u[a, b] * (j + 1.0) / h * se.u[j + 1, n_u + b]
-        se.side[i] = -value
-    solve_mobility(st)
+        held.side[i] = -value
+    solve_held(held)
     se.force[:] = 0.0
-    for i in range(se.count):
-        se.F[j, se.held[i]] = se.force[se.held[i]] = se.side[i]
+    for i in range(held.count):
+        se.F[j, held.row[i]] = se.force[held.row[i]] = held.side[i]
     add_forces(dense.on, se.force, se.f)
 
 
@@ -206,7 +158,7 @@ def expand(mech: Mech, k: Moving, y: State, st: Stages, h: float, accuracy: floa
     for c in range(y.mode.shape[0]):
         se.along[c] = direction(y, c)
         se.mu[c], _, _ = friction_coefficient(mech, k, c, 0.0, y.N[c])
-    if not factor_mobility(mech, y, st):
+    if not factor_held(mech, y.mode, se.held):
         return False
     put_inputs(mech, k, y, st, h)
     for i in range(y.q.shape[0]):
@@ -218,7 +170,7 @@ def expand(mech: Mech, k: Moving, y: State, st: Stages, h: float, accuracy: floa
     for j in range(TERMS):
         put_structure(mech, st, j, h)
         put_contacts(mech, y, st, j, h)
-        if se.count > 0:
+        if se.held.count > 0:
             hold(mech, st, j, h)
         largest = 0.0
         for i in range(y.q.shape[0]):

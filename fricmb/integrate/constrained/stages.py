@@ -24,7 +24,7 @@ from fricmb.integrate.constrained.friction_rows import add_friction, friction_re
 from fricmb.integrate.constrained.jacobian_layers import Layers, add, add_contacts, add_joints, add_mass, add_structure
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech, mech_of
-from fricmb.integrate.constrained.state import State
+from fricmb.integrate.constrained.state import Held, State, held_of
 from fricmb.integrate.constrained.steep_laws import Steep, set_base, steep_laws_of
 from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.constrained.turning import Turns, turns_of
@@ -36,7 +36,6 @@ from fricmb.integrate.problem import (
     Complexes3,
     Floats,
     Floats2,
-    Ints,
     Pivots,
     Problem,
 )
@@ -48,15 +47,13 @@ class Series(Layout):
     """Terms of a Taylor series over ``length`` from ``begin`` on, ``terms`` of them (0: there is none), in t/length.
 
     ``x`` (., n) of positions, ``path`` (., r) of rows (see ``dense_rows``), ``N``, ``F``, ``g`` of loads, friction and
-    slip velocities; ``u`` (s+1, 2 n_u) of signals and their rates, by values ``signal`` at 0, c.  ``along`` (n_c,) modes
-    as numbers, ``mu`` coefficients; ``held`` the first ``count`` rows that stick, ``mobility`` factors of theirs,
-    ``side`` a side of equations with it; ``force`` (r,) along rows; ``f``, ``acc`` (n,) space.
+    slip velocities; ``u`` (s+1, 2 n_u) of signals and their rates, by values ``signal`` at 0, c.  ``along`` (n_c,)
+    modes as numbers, ``mu`` coefficients; ``held`` what sticks; ``force`` (r,) along rows; ``f``, ``acc`` (n,) space.
     """
 
     begin: float
     length: float
     terms: int
-    count: int
     x: Floats2
     path: Floats2
     N: Floats2
@@ -66,9 +63,7 @@ class Series(Layout):
     signal: Floats2
     along: Floats
     mu: Floats
-    held: Ints
-    mobility: Floats2
-    side: Floats
+    held: Held
     force: Floats
     f: Floats
     acc: Floats
@@ -84,10 +79,9 @@ def series_of(problem: Problem, stages: int) -> Series:
     n, rows, n_u = (problem.n, problem.m, problem.n_u) if some else (0, 0, 0)
     terms = TERMS if some else 0
     return Series(
-        0.0, 0.0, 0, 0, np.zeros((terms + 2, n)), np.zeros((terms + 2, 2 * rows)), *np.zeros((3, terms, rows)),
+        0.0, 0.0, 0, np.zeros((terms + 2, n)), np.zeros((terms + 2, 2 * rows)), *np.zeros((3, terms, rows)),
         np.zeros((stages + 1, 2 * n_u)), np.zeros((stages + 1, 2 * n_u)), np.zeros(rows), np.zeros(rows),
-        np.zeros(rows, np.int64), np.zeros((rows, rows)), np.zeros(rows), np.zeros(2 * rows), np.zeros(n),
-        np.zeros(n),
+        held_of(rows), np.zeros(2 * rows), np.zeros(n), np.zeros(n),
     )  # fmt: skip
 
 

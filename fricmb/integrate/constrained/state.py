@@ -6,10 +6,11 @@ import numpy as np
 
 from fricmb.integrate.compile.band import length_of
 from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.constrained.dense_rows import has_dense_rows
 from fricmb.integrate.constrained.jacobian_layers import Layers
 from fricmb.integrate.constrained.problem_structs import mech_of
 from fricmb.integrate.constrained.structure import mechanism_of
-from fricmb.integrate.problem import Codes, Floats, Pivots, Problem
+from fricmb.integrate.problem import Codes, Floats, Floats2, Ints, Pivots, Problem
 
 
 class State(Layout):
@@ -46,11 +47,25 @@ def state_of(problem: Problem) -> State:
     )  # fmt: skip
 
 
+class Held(Layout):
+    """The first ``count`` of ``row`` (m,) stick: ``factor`` (m, m) of their mobility, ``side`` (m,) space."""
+
+    count: int
+    row: Ints
+    factor: Floats2
+    side: Floats
+
+
+def held_of(rows: int) -> Held:
+    """Space for so many."""
+    return Held(0, np.zeros(rows, np.int64), np.zeros((rows, rows)), np.zeros(rows))
+
+
 class Instant(Layout):
     """What is needed to solve at one instant: the matrix and its factors, right-hand side (size,), rates of X.
 
     ``other`` (n,): accelerations to compare with, sizes of groups.  ``mode`` (n_c,) of the factors, where they are
-    ``kept`` (see ``instant_matrix``).
+    ``kept`` (see ``instant_matrix``).  ``held`` what sticks at dense rows.
     """
 
     L: Layers
@@ -62,6 +77,7 @@ class Instant(Layout):
     other: Floats
     mode: Codes
     kept: int
+    held: Held
 
 
 def instant_of(problem: Problem) -> Instant:
@@ -72,5 +88,5 @@ def instant_of(problem: Problem) -> Instant:
     m = mechanism_of(problem)
     return Instant(
         layers, np.zeros(length), np.zeros(size, np.int32), np.zeros(size), np.zeros(size), np.zeros(m.n_y),
-        np.zeros(m.n), np.zeros(problem.n_c, np.int8), 0,
+        np.zeros(m.n), np.zeros(problem.n_c, np.int8), 0, held_of(problem.m if has_dense_rows(problem, m) else 0),
     )  # fmt: skip

@@ -1,0 +1,117 @@
+"""What sticks at dense rows: its forces, and accelerations and velocities with them, by its mobility alone."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate.compile.block import block
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.constrained.dense_rows import add_forces
+from fricmb.integrate.constrained.forces import forces
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.problem_structs import Mech
+from fricmb.integrate.constrained.slip_accelerations import slip_accelerations
+from fricmb.integrate.constrained.slip_rows import carried, friction_coefficient, guided
+from fricmb.integrate.constrained.state import Held, State
+from fricmb.integrate.problem import SLIP, STICK, Codes
+
+#: Part of its mobility that a contact which sticks must have beside those that do: forces are known to 1e-16 over it.
+REDUNDANT = 1e-9
+
+
+@kernel
+def factor_held(mech: Mech, mode: Codes, held: Held) -> bool:
+    """Cholesky factors of the mobility of all that sticks; False where some of it is nearly redundant."""
+    count = 0
+    for c in range(mode.shape[0]):
+        if mode[c] == STICK and not guided(mech, c, 0):
+            if mech.port.soft[c] > 0.0:
+                return False
+            held.row[count] = c
+            count += 1
+    held.count = count
+    L, D = held.factor, mech.dense.mobility
+    for a in range(count):
+        for b in range(a + 1):
+            value = D[held.row[a], held.row[b]]
+            for i in range(b):
+                value -= L[a, i] * L[b, i]
+            if a > b:
+                L[a, b] = value / L[b, b]
+            elif value > REDUNDANT * D[held.row[a], held.row[a]]:
+                L[a, a] = np.sqrt(value)
+            else:
+                return False
+    return True
+
+
+@kernel
+def solve_held(held: Held) -> None:
+    """Forces that bring the accelerations in ``held.side``, in place of these."""
+    L, x = held.factor, held.side
+    for a in range(held.count):
+        value = x[a]
+        for i in range(a):
+            value -= L[a, i] * x[i]
+        x[a] = value / L[a, a]
+    for a in range(held.count - 1, -1, -1):
+        value = x[a]
+        for i in range(a + 1, held.count):
+            value -= L[i, a] * x[i]
+        x[a] = value / L[a, a]
+
+
+@kernel
+def put_forces(mech: Mech, k: Moving, held: Held) -> None:
+    """What forces in ``held.side`` do to all coordinates, into ``k.fy``."""
+    k.rows[0, :] = 0.0
+    for i in range(held.count):
+        k.rows[0, held.row[i]] = held.side[i]
+    k.fy[:] = 0.0
+    add_forces(mech.dense.on, k.rows[0], k.fy)
+
+
+@block
+def react_at_rows(mech: Mech, k: Moving, y: State, held: Held) -> bool:
+    """Accelerations and friction forces of the modes at X; False where what sticks is nearly redundant.
+
+    Once by the mobility of what sticks, and once more for the round-off of that.
+    """
+    if not factor_held(mech, y.mode, held):
+        return False
+    forces(mech, k, y.lam, y.F, y.N, y.g)
+    for c in range(y.mode.shape[0]):
+        y.F[c] = 0.0
+        if y.mode[c] == SLIP:
+            load = carried(mech, c, y.N[c])
+            y.F[c] = -y.n[c] * friction_coefficient(mech, k, c, 0.0, load)[0] * load
+    forces(mech, k, y.lam, y.F, y.N, y.g)
+    for i in range(y.a.shape[0]):
+        y.a[i] = mech.dense.inverse[i] * k.fy[i]
+    for _ in range(2 if held.count > 0 else 0):
+        k.ddy[:] = y.a
+        slip_accelerations(mech, k, y)
+        for i in range(held.count):
+            held.side[i] = -y.ga[held.row[i]]
+        solve_held(held)
+        put_forces(mech, k, held)
+        for i in range(held.count):
+            y.F[held.row[i]] += held.side[i]
+        for i in range(y.a.shape[0]):
+            y.a[i] += mech.dense.inverse[i] * k.fy[i]
+    k.ddy[:] = 0.0
+    return True
+
+
+@block
+def stop_rows(mech: Mech, k: Moving, y: State, held: Held) -> bool:
+    """Move v the least so that what sticks does not slip, slip velocities being known; False as above."""
+    if not factor_held(mech, y.mode, held):
+        return False
+    for i in range(held.count):
+        held.side[i] = -y.g[held.row[i]]
+    solve_held(held)
+    put_forces(mech, k, held)
+    for i in range(y.v.shape[0]):
+        y.v[i] += mech.dense.inverse[i] * k.fy[i]
+    return True
