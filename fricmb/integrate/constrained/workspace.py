@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import AbstractContextManager
 from typing import NamedTuple
 
+from fricmb.integrate.constrained.dense_rows import has_dense_rows
 from fricmb.integrate.constrained.moving import Moving, lengths, moving_of
 from fricmb.integrate.constrained.pattern import of_pattern
 from fricmb.integrate.constrained.problem_structs import mech_of
@@ -44,7 +45,7 @@ class RunWorkspace(NamedTuple):
 
 def evaluation(problem: Problem) -> AbstractContextManager[Evaluation]:
     """Workspace for evaluating a problem; the state is empty."""
-    key = "mechanism at an instant", _sizes(problem)
+    key = "mechanism at an instant", _sizes(problem), has_dense_rows(problem, mechanism_of(problem))
     return lent(key, lambda: Evaluation(moving_of(problem), instant_of(problem), state_of(problem)))
 
 
