@@ -145,7 +145,7 @@ def test_series_and_newton_have_the_same_steps(name: str, monkeypatch: pytest.Mo
     by_newton = fm.simulate(pad(**SCENES[name]), t_end=2.0, rtol=1e-6, method="radau")
     assert by_newton.stats.n_lu > 0
     assert [event.kind for event in by_series.events] == [event.kind for event in by_newton.events]
-    assert abs(by_series.stats.n_steps - by_newton.stats.n_steps) <= 2
+    assert by_series.stats.n_steps == pytest.approx(by_newton.stats.n_steps, rel=0.1)
     for part in ("q", "v"):
         one, other = getattr(by_series, part), getattr(by_newton, part)
         np.testing.assert_allclose(one[:, -1], other[:, -1], atol=1e-7 * abs(other).max())
@@ -162,7 +162,7 @@ def test_a_run_behind_one_of_another_law(monkeypatch: pytest.MonkeyPatch) -> Non
         return fm.Scene("s", [body, belt, fm.Contact("c", body.point("p"), belt, law=law, normal_force=1.0)])
 
     fm.simulate(block(fm.laws.Stribeck(mu_s=0.4, mu_k=0.3, v_s=0.1)), t_end=1.0, method="radau")
-    sol = fm.simulate(block(fm.laws.Coulomb(mu=0.3)), t_end=1.0, method="radau")
+    sol = fm.simulate(block(fm.laws.Coulomb(mu_s=0.3, mu_k=0.3)), t_end=1.0, method="radau")
     assert sol.q[0, -1] == pytest.approx(0.3 * (1.0 - np.cos(1.0)), abs=1e-9)
 
 
@@ -172,7 +172,7 @@ def test_fast_stiff_modes_are_left_to_newton() -> None:
     frequencies = np.append(FREQUENCIES, 1e7)
     body = fm.ModalBody("pad", frequencies=frequencies, damping_ratios=0.02, shapes=shapes, axes="x")
     belt = fm.Driven("belt", velocity={"x": SPEED})
-    law = fm.laws.Coulomb(mu=0.5)
+    law = fm.laws.Coulomb(mu_s=0.5, mu_k=0.5)
     contacts = [fm.Contact(f"c{c}", body.point(f"p{c}"), belt, law=law, normal_force=1.0) for c in range(CONTACTS)]
     sol = fm.simulate(fm.Scene("pad", [body, belt, *contacts]), t_end=1.0, rtol=1e-6, method="radau")
     slow = fm.simulate(fm.Scene("pad", [body, belt, *contacts]), t_end=1.0, rtol=1e-9, method="radau")

@@ -32,7 +32,7 @@ from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAILURES, FULL, SLICE_OVER
 from fricmb.integrate.run.stop import ended
 from fricmb.integrate.signals.largest_value import largest_forces
-from fricmb.integrate.signals.longest_steps import shortest_of, steps_of_run
+from fricmb.integrate.signals.longest_steps import LongestSteps, shortest_of, steps_of_run
 from fricmb.integrate.step.stages import STIFF
 from fricmb.integrate.step.step_control import FREE, SAMPLED, first_step
 
@@ -100,7 +100,7 @@ def run_mechanism(
             code = impacts.jump(code) if impacts.may_jump(code) else code
         if code == DONE:
             chunks.note_changes(problem.contacts, start, y.mode, y.n)
-            _settle(workspace, problem, start, t_end, shortest_of(limits, start.t, t_end, mech.breakpoints))
+            _settle(workspace, problem, start, t_end, limits)
             if impacts is not None:
                 code, go_on = impacts.at_start(), impacts.around(stepping)
         if code == DONE:
@@ -166,14 +166,15 @@ def _longest_step(problem: Problem, span: float) -> float:
     return (SAMPLED if short else FREE) * span
 
 
-def _settle(workspace: RunWorkspace, problem: Problem, start: Start, t_end: float, shortest: float) -> None:
-    """What counts as 1, and the first step, from what is found at the start; ``shortest`` time inputs tell apart."""
+def _settle(workspace: RunWorkspace, problem: Problem, start: Start, t_end: float, limits: LongestSteps) -> None:
+    """What counts as 1, and the first step, from what is found at the start; ``limits`` of steps under inputs."""
     y, out, c = workspace.y, workspace.out, workspace.control
     if not np.any(y.v):
         load, pushed = _load(mechanism_of(problem), y), _largest_push(problem, start.t, t_end)
         if (c.mass * np.abs(y.a)).max(initial=0.0) <= max(ROUND_OFF * max(load, pushed), NOTHING):
+            shortest = shortest_of(limits, start.t, t_end, mech_of(problem).breakpoints)
             brief = 10.0 * shortest * pushed / c.mass.max() if pushed > 0.0 else 0.0
-            slip = max(float(np.abs(y.g).max(initial=0.0)), brief)
+            slip = max(float(np.abs(y.g).max(initial=0.0)), brief, _slip_of_drivers(problem, start, t_end, limits))
             to_come = _speeds_to_come(problem, start, t_end, (load, pushed), c.mass, slip)
             c.floor_v[:] = np.maximum(c.floor_v, to_come)
             out.top_slip = max(out.top_slip, _slip_by(problem, start, to_come)[0])
@@ -287,12 +288,24 @@ def _slip_by(problem: Problem, start: Start, *v: Floats) -> Floats:
 LATER = 1e-3, 1e-2, 1e-1, 1.0
 
 
-def _slip_of_drivers(problem: Problem, start: Start, t_end: float) -> float:
-    """Largest slip velocity that signals bring at some later times, where nothing else moves."""
+#: So many of the shortest stretches of inputs are looked at for what they bring.
+BRIEFEST = 100
+
+
+def _slip_of_drivers(problem: Problem, start: Start, t_end: float, limits: LongestSteps | None = None) -> float:
+    """Largest slip velocity that signals bring at some later times, where nothing else moves.
+
+    With the ``limits`` of steps under inputs, in the middle of the shortest of these as well: a bell's peak is there.
+    """
     if not problem.n_u:
         return 0.0
     t = start.t + np.array(LATER) * (t_end - start.t)
-    g = np.abs(_completed(problem, start, t, np.zeros((len(LATER), problem.n)))[2])
+    if limits is not None:
+        middle = 0.5 * (limits.edge[:-1] + limits.edge[1:])
+        shortest = np.argsort(np.abs(limits.longest), kind="stable")[:BRIEFEST]
+        within = middle[shortest]
+        t = np.append(t, within[(within > start.t) & (within < t_end)])
+    g = np.abs(_completed(problem, start, t, np.zeros((len(t), problem.n)))[2])
     return float(g[np.isfinite(g)].max(initial=0.0))
 
 
