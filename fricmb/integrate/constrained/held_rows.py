@@ -8,15 +8,13 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.constrained.dense_rows import add_forces
 from fricmb.integrate.constrained.forces import forces
+from fricmb.integrate.constrained.loop_mobility import DEPENDENT
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_accelerations import slip_accelerations
 from fricmb.integrate.constrained.slip_rows import carried, friction_coefficient, guided
 from fricmb.integrate.constrained.state import Held, State
 from fricmb.integrate.problem import SLIP, STICK, Codes
-
-#: Part of its mobility that a contact which sticks must have beside those that do: forces are known to 1e-16 over it.
-REDUNDANT = 1e-9
 
 
 @kernel
@@ -25,8 +23,6 @@ def factor_held(mech: Mech, mode: Codes, held: Held) -> bool:
     count = 0
     for c in range(mode.shape[0]):
         if mode[c] == STICK and not guided(mech, c, 0):
-            if mech.port.soft[c] > 0.0:
-                return False
             held.row[count] = c
             count += 1
     held.count = count
@@ -38,7 +34,7 @@ def factor_held(mech: Mech, mode: Codes, held: Held) -> bool:
                 value -= L[a, i] * L[b, i]
             if a > b:
                 L[a, b] = value / L[b, b]
-            elif value > REDUNDANT * D[held.row[a], held.row[a]]:
+            elif value > DEPENDENT * D[held.row[a], held.row[a]]:
                 L[a, a] = np.sqrt(value)
             else:
                 return False

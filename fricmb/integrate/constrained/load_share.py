@@ -212,7 +212,11 @@ def mark_loops(mech: Mech, k: Moving, w: Instant, y: State, part: Codes) -> None
         return
     move(mech, k, y.t, y.q, y.v)
     D = mobility(mech, k, w, y, held, np.zeros((y.F.shape[0], y.lam.shape[0])))
-    whole = rank(D)
+    whole, count = rank(D), 0
+    for a in range(D.shape[0]):
+        count += 1 if D[a, a] > 0.0 else 0
+    if whole == count:
+        return
     for c in range(part.shape[0]):
         if held[c] == STICK:
             rest = D.copy()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.constrained.forces import has_dense_rows
 from fricmb.integrate.constrained.instant_matrix import NONE, instant_matrix, solve_instant
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
@@ -39,7 +40,13 @@ def mobility(mech: Mech, k: Moving, w: Instant, y: State, held: Codes, answers: 
     """
     port, linear, n, m = mech.port, mech.linear, y.q.shape[0], y.lam.shape[0]
     rows = port.row[held.shape[0]]
-    D, V = np.zeros((rows, rows)), np.zeros((rows, n))
+    D = np.zeros((rows, rows))
+    if has_dense_rows(mech):
+        for a in range(rows):
+            for b in range(rows):
+                D[a, b] = mech.dense.mobility[a, b] if held[a] == STICK and held[b] == STICK else 0.0
+        return D
+    V = np.zeros((rows, n))
     if not instant_matrix(mech, k, w, y, NONE):
         return D
     for c in range(held.shape[0]):

@@ -8,7 +8,7 @@ from fricmb.integrate.constrained.accelerations import react
 from fricmb.integrate.constrained.forces import is_unloaded
 from fricmb.integrate.constrained.group_release import start_group
 from fricmb.integrate.constrained.load_share import mark_loops
-from fricmb.integrate.constrained.mode_enumeration import FOUND, NO_SOLUTION, enumerate_modes
+from fricmb.integrate.constrained.mode_enumeration import ENUMERATED, FOUND, NO_SOLUTION, enumerate_modes
 from fricmb.integrate.constrained.mode_trial import (
     ARRIVES,
     LETS_GO,
@@ -25,6 +25,7 @@ from fricmb.integrate.constrained.mode_trial import (
 )
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
+from fricmb.integrate.constrained.release_in_turn import release_in_turn
 from fricmb.integrate.constrained.slip_rows import may_open, plane
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.law_values import magnitude, point_along
@@ -39,7 +40,8 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
     what they hold); the port that is furthest beyond its limit is released against its force, one that would slip the
     wrong way, or is held by others, sticks again.  What LETS_GO in ``part`` does not stick.  One that comes to rest is
     released before those that have rested: more friction at rest than in slip lets several combinations hold,
-    and what has stuck lets go only where it has to.  Where that does not settle, every combination is tried.
+    and what has stuck lets go only where it has to.  Where that does not settle, every combination is tried; many ports
+    let go one after the other (``release_in_turn``).
     """
     n_c = y.mode.shape[0]
     count, anew = 0, True
@@ -75,6 +77,9 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
             release(mech, k, y, worst)
         else:
             y.mode[worst] = STICK
+    many = count > ENUMERATED and release_in_turn(mech, k, w, y, part, forced) and ease(mech, k, w, y)
+    if many and find_wrong(mech, k, w, y, part, forced) < 0:
+        return FOUND
     code = enumerate_modes(mech, k, w, y, part, count, False)
     return enumerate_modes(mech, k, w, y, part, count, True) if code == NO_SOLUTION else code
 
