@@ -178,3 +178,37 @@ def test_fast_stiff_modes_are_left_to_newton() -> None:
     slow = fm.simulate(fm.Scene("pad", [body, belt, *contacts]), t_end=1.0, rtol=1e-9, method="radau")
     assert sol.stats.n_lu > 0
     np.testing.assert_allclose(sol.q[:MODES, -1], slow.q[:MODES, -1], atol=1e-6)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_energy_and_laws_hold_between_the_steps(name: str) -> None:
+    """The audit knows formulas alone: work of dampers in contacts and of the belt, cones, loads."""
+    sol = fm.simulate(pad(**SCENES[name]), t_end=6.0, rtol=1e-8, method="radau")
+    found = sol.audit()
+    assert found.ok, found
+
+
+def test_of_many_at_rest_those_let_go_that_have_to() -> None:
+    """A combination exists, whatever the limits; a search by releasing and holding alone went round in circles."""
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        scene, limits = resting_blocks(rng)
+        sol = fm.simulate(scene, t_end=1e-3, rtol=1e-6, method="radau")
+        force = np.array([sol.force(f"c{c}")[0, -1] for c in range(CONTACTS)])
+        slip = np.array([sol.relative_velocity(f"c{c}")[0, -1] for c in range(CONTACTS)])
+        for F, g, (most, least) in zip(force, slip, limits, strict=True):
+            assert abs(F) <= most * (1 + 1e-9) if g == 0 else F == pytest.approx(-np.sign(g) * least)
+
+
+def resting_blocks(rng: np.random.Generator) -> tuple[fm.Scene, list[tuple[float, float]]]:
+    """A body at rest on modes that differ by little, pushed at once beyond what its contacts hold."""
+    shapes = {f"p{c}": (np.ones(MODES) + 0.3 * rng.normal(size=MODES))[None] for c in range(CONTACTS)}
+    push = {"push": rng.normal(size=MODES)[None]}
+    body = fm.ModalBody("b", frequencies=FREQUENCIES, damping_ratios=DAMPING, shapes=shapes | push, axes="x")
+    limits = [(most, most * rng.uniform(0.3, 0.9)) for most in rng.uniform(0.02, 0.2, CONTACTS)]
+    contacts = [
+        fm.Contact(f"c{c}", body.point(f"p{c}"), law=fm.laws.Coulomb(mu_s=most, mu_k=least), normal_force=1.0)
+        for c, (most, least) in enumerate(limits)
+    ]
+    load = fm.Force("load", body.point("push"), axis="x", value=1.0)
+    return fm.Scene("resting", [body, load, *contacts]), limits

@@ -6,6 +6,7 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.constrained.dense_rows import put_path
 from fricmb.integrate.constrained.forces import (
     bend,
     call_joint,
@@ -212,6 +213,21 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool) -> bool:
     return True
 
 
+@kernel
+def lost_in_dampers(mech: Mech, k: Moving, N: Floats) -> float:
+    """Power that normal forces of dense rows take at X: those without damping none, being linear while they press."""
+    dense, port, X = mech.dense, mech.port, k.s.X
+    n, n_u, m, lost = k.ddy.shape[0], k.s.ddu.shape[0], N.shape[0], 0.0
+    put_path(dense.of, X[1 + n : 1 + 2 * n], k.rows[1])
+    for c in range(m):
+        if port.normal[c] == NORMAL_LAW and port.damped[c]:
+            rate = k.rows[1, m + c]
+            for b in range(n_u):
+                rate += dense.by_u[m + c, b] * X[1 + 2 * n + n_u + b]
+            lost -= (max(N[c], 0.0) - port.N0[c]) * rate
+    return lost
+
+
 @block
 def powers(mech: Mech, k: Moving, F: Floats, g: Floats, N: Floats, out: Floats) -> None:
     """Powers at X with the forces of the last evaluation: friction of every port, damping, input."""
@@ -226,12 +242,14 @@ def powers(mech: Mech, k: Moving, F: Floats, g: Floats, N: Floats, out: Floats) 
             out[c] -= F[a] * g[a]
             if port.joint[c] < 0:
                 supply += F[a] * port.w[a]
-        if port.joint[c] < 0 and port.normal[c] == NORMAL_LAW:
+        if port.joint[c] < 0 and port.normal[c] == NORMAL_LAW and not has_dense_rows(mech):
             evaluate(port.normals, c, s)
             rate = s.x[1]
             push = max(N[c], 0.0) - port.N0[c]
             # of one with damping all counts as lost here, and what is stored is taken off in the end
             damping -= (push if port.damped[c] else push + s.out[4]) * rate
+    if has_dense_rows(mech):
+        damping += lost_in_dampers(mech, k, N)
     for j in range(n_u):
         supply -= k.fu[j] * X[1 + 2 * n_y + n_u + j]
     for e in range(linear.C.shape[0]):
