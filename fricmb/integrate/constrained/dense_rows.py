@@ -6,6 +6,8 @@ and two lists of indices each; as columns of one matrix they cost what they mult
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 
 from fricmb.integrate.compile.block import block
@@ -22,7 +24,7 @@ class DenseRows(Layout):
 
     Slip velocities: ``g = of' v + by_u u' + offset``.  Distances: ``e = of' q + by_u u``, and loads ``N = offset +
     stiff e + damp e'`` (``stiff``, ``damp`` (n_c,)).  ``inverse`` (n,) of the diagonal mass matrix; ``mobility`` (m, m)
-    slip accelerations by unit forces.  Without rows where a scene is not of this kind.
+    slip accelerations by unit forces.  ``stamp``: a number of its own.  Without rows where a scene is not of this kind.
     """
 
     of: Floats2
@@ -33,6 +35,7 @@ class DenseRows(Layout):
     damp: Floats
     inverse: Floats
     mobility: Floats2
+    stamp: int
 
 
 @block
@@ -57,6 +60,8 @@ def add_forces(on: Floats2, force: Floats, f: Floats) -> None:
                 f[i] += share * line[i]
 
 
+_stamps = itertools.count(1)
+
 #: Rows of contacts from which on dense ones pay, and the part of them that is not 0; numbers in a matrix of them.
 FEW, FULL, MOST = 12, 0.5, 1e6
 
@@ -73,7 +78,7 @@ def has_dense_rows(problem: Problem, m: Mechanism) -> bool:
 
 def _none() -> DenseRows:
     empty, flat = np.zeros((0, 0)), np.zeros(0)
-    return DenseRows(empty, empty, empty, flat, flat, flat, flat, empty)
+    return DenseRows(empty, empty, empty, flat, flat, flat, flat, empty, 0)
 
 
 def _made(problem: Problem, m: Mechanism) -> DenseRows | None:
@@ -99,6 +104,7 @@ def _made(problem: Problem, m: Mechanism) -> DenseRows | None:
     return DenseRows(
         np.ascontiguousarray(of), np.ascontiguousarray(of.T), np.vstack([-Wu.reshape(problem.m, n_u), Pu]),
         np.concatenate([-contacts.w, offset]), stiff, damp, 1.0 / mass, np.ascontiguousarray(W.T @ (W / mass[:, None])),
+        next(_stamps),
     )  # fmt: skip
 
 

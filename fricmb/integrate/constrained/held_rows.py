@@ -6,6 +6,7 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.long_loops import long_loops
 from fricmb.integrate.constrained.dense_rows import add_forces
 from fricmb.integrate.constrained.forces import forces
 from fricmb.integrate.constrained.loop_mobility import DEPENDENT
@@ -18,43 +19,60 @@ from fricmb.integrate.problem import SLIP, STICK, Codes
 
 
 @kernel
-def factor_held(mech: Mech, mode: Codes, held: Held) -> bool:
-    """Cholesky factors of the mobility of all that sticks; False where some of it is nearly redundant."""
-    count = 0
+def list_held(mech: Mech, mode: Codes, held: Held) -> bool:
+    """List the rows that stick; whether they are those whose factors are there."""
+    same, count = held.stamp == mech.dense.stamp, 0
     for c in range(mode.shape[0]):
         if mode[c] == STICK and not guided(mech, c, 0):
+            same = same and count < held.count and held.row[count] == c
             held.row[count] = c
             count += 1
+    same = same and count == held.count
     held.count = count
-    L, D = held.factor, mech.dense.mobility
-    for a in range(count):
-        for b in range(a + 1):
-            value = D[held.row[a], held.row[b]]
-            for i in range(b):
-                value -= L[a, i] * L[b, i]
-            if a > b:
-                L[a, b] = value / L[b, b]
-            elif value > DEPENDENT * D[held.row[a], held.row[a]]:
-                L[a, a] = np.sqrt(value)
-            else:
-                return False
+    return bool(same)
+
+
+@kernel
+def factor_held(mech: Mech, mode: Codes, held: Held) -> bool:
+    """Cholesky factors of the mobility of all that sticks; False where some of it is nearly redundant.
+
+    Its lower factor turned, so that loops go along rows.
+    """
+    if list_held(mech, mode, held):
+        return True
+    held.stamp = 0
+    U, D = held.factor, mech.dense.mobility
+    for a in range(held.count):
+        line, row = U[a], D[held.row[a]]
+        for b in range(a, held.count):
+            line[b] = row[held.row[b]]
+        for i in range(a):
+            before, share = U[i], U[i, a]
+            for b in range(a, held.count):
+                line[b] -= share * before[b]
+        if not line[a] > DEPENDENT * row[held.row[a]]:
+            return False
+        root = np.sqrt(line[a])
+        for b in range(a, held.count):
+            line[b] /= root
+    held.stamp = mech.dense.stamp
     return True
 
 
 @kernel
 def solve_held(held: Held) -> None:
     """Forces that bring the accelerations in ``held.side``, in place of these."""
-    L, x = held.factor, held.side
+    U, x = held.factor, held.side
     for a in range(held.count):
-        value = x[a]
-        for i in range(a):
-            value -= L[a, i] * x[i]
-        x[a] = value / L[a, a]
-    for a in range(held.count - 1, -1, -1):
-        value = x[a]
+        line = U[a]
+        x[a] /= line[a]
         for i in range(a + 1, held.count):
-            value -= L[i, a] * x[i]
-        x[a] = value / L[a, a]
+            x[i] -= line[i] * x[a]
+    for a in range(held.count - 1, -1, -1):
+        line, value = U[a], x[a]
+        for i in range(a + 1, held.count):
+            value -= line[i] * x[i]
+        x[a] = value / line[a]
 
 
 @kernel
@@ -68,6 +86,7 @@ def put_forces(mech: Mech, k: Moving, held: Held) -> None:
 
 
 @block
+@long_loops
 def react_at_rows(mech: Mech, k: Moving, y: State, held: Held) -> bool:
     """Accelerations and friction forces of the modes at X; False where what sticks is nearly redundant.
 
@@ -100,6 +119,7 @@ def react_at_rows(mech: Mech, k: Moving, y: State, held: Held) -> bool:
 
 
 @block
+@long_loops
 def stop_rows(mech: Mech, k: Moving, y: State, held: Held) -> bool:
     """Move v the least so that what sticks does not slip, slip velocities being known; False as above."""
     if not factor_held(mech, y.mode, held):

@@ -79,9 +79,10 @@ def series_of(problem: Problem, stages: int) -> Series:
     n, rows, n_u = (problem.n, problem.m, problem.n_u) if some else (0, 0, 0)
     terms = TERMS if some else 0
     return Series(
-        0.0, 0.0, 0, np.zeros((terms + 2, n)), np.zeros((terms + 2, 2 * rows)), *np.zeros((3, terms, rows)),
-        np.zeros((stages + 1, 2 * n_u)), np.zeros((stages + 1, 2 * n_u)), np.zeros(rows), np.zeros(rows),
-        held_of(rows), np.zeros(2 * rows), np.zeros(n), np.zeros(n),
+        0.0, 0.0, 0, np.zeros((terms + 2, n)), np.zeros((terms + 2, 2 * rows)), np.zeros((terms, rows)),
+        np.zeros((terms, rows)), np.zeros((terms, rows)), np.zeros((stages + 1, 2 * n_u)),
+        np.zeros((stages + 1, 2 * n_u)), np.zeros(rows), np.zeros(rows), held_of(rows), np.zeros(2 * rows),
+        np.zeros(n), np.zeros(n),
     )  # fmt: skip
 
 

@@ -48,8 +48,12 @@ def state_of(problem: Problem) -> State:
 
 
 class Held(Layout):
-    """The first ``count`` of ``row`` (m,) stick: ``factor`` (m, m) of their mobility, ``side`` (m,) space."""
+    """The first ``count`` of ``row`` (m,) stick: ``factor`` (m, m) of their mobility, ``side`` (m,) space.
 
+    ``stamp``: of the rows that the factors are of, 0 where there are none.
+    """
+
+    stamp: int
     count: int
     row: Ints
     factor: Floats2
@@ -58,7 +62,7 @@ class Held(Layout):
 
 def held_of(rows: int) -> Held:
     """Space for so many."""
-    return Held(0, np.zeros(rows, np.int64), np.zeros((rows, rows)), np.zeros(rows))
+    return Held(0, 0, np.zeros(rows, np.int64), np.zeros((rows, rows)), np.zeros(rows))
 
 
 class Instant(Layout):
