@@ -75,6 +75,25 @@ def gaps_within(mech: Mech, k: Moving, y: State, end: State, st: Stages, out: Wa
 
 
 @kernel
+def port_trigger(
+    mech: Mech, k: Moving, out: Watch, mode: Codes, direction: Floats, F: Floats, N: Floats, g: Floats, j: int
+) -> float:
+    """Trigger j of a port: what it could still bear, or its slip; behind each its load, if it may open."""
+    port, c = mech.port, j // 2
+    if j % 2 == 1:
+        load = -N[c] if mode[c] == OPEN else N[c]
+        return float(load) if may_open(mech, c) else 1.0
+    if port.law[c] == LAW_SMOOTH or mode[c] == OPEN:
+        return 1.0
+    if mode[c] == STICK:
+        return spare(mech, k, c, F, N)
+    # away from rest slip has a direction of its own, and a force that passes through 0 none but round-off's
+    away = plane(mech, c) and k.form[c] == 0
+    speed = magnitude(port.row, c, g) if away else slip_speed(port.row, c, direction, F, g)
+    return float(speed + out.top_slip * lack(mech, k, c, N[c]))
+
+
+@kernel
 def triggers(
     mech: Mech, k: Moving, out: Watch, mode: Codes, direction: Floats, F: Floats, N: Floats, g: Floats, lam: Floats,
     at_end: bool,
@@ -83,22 +102,9 @@ def triggers(
 
     Behind them one a port whose load has a kink in the present step.  Slip almost without load may turn as it likes.
     """
-    port, joint = mech.port, mech.joint
-    n_c = mode.shape[0]
-    for c in range(n_c):
-        out.trigger[2 * c] = 1.0
-        out.trigger[2 * c + 1] = 1.0
-        if may_open(mech, c):
-            out.trigger[2 * c + 1] = -N[c] if mode[c] == OPEN else N[c]
-        if port.law[c] == LAW_SMOOTH or mode[c] == OPEN:
-            continue
-        if mode[c] == STICK:
-            out.trigger[2 * c] = spare(mech, k, c, F, N)
-        else:
-            # away from rest slip has a direction of its own, and a force that passes through 0 none but round-off's
-            away = plane(mech, c) and k.form[c] == 0
-            speed = magnitude(port.row, c, g) if away else slip_speed(port.row, c, direction, F, g)
-            out.trigger[2 * c] = speed + out.top_slip * lack(mech, k, c, N[c])
+    joint, n_c = mech.joint, mode.shape[0]
+    for j in range(2 * n_c):
+        out.trigger[j] = port_trigger(mech, k, out, mode, direction, F, N, g, j)
     for j in range(joint.port.shape[0]):
         out.trigger[2 * n_c + j] = lam[joint.row[j]] if joint.one_sided[j] else 1.0
         if is_open(mech, j):
@@ -110,7 +116,7 @@ def triggers(
             side = law_side(mech, k, c, g, N)
             out.trigger[kinks + c] = side if out.kinked[c] == BEFORE else -side
         elif out.kinked[c] != 0:
-            j, value = port.joint[c], 0.0
+            j, value = mech.port.joint[c], 0.0
             for r in range(joint.row[j], joint.row[j + 1]):
                 value += out.kink[r] * lam[r]
             out.trigger[kinks + c] = value

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.event_functions import gaps, grain, triggers, violated
+from fricmb.integrate.constrained.event_functions import gaps, grain, port_trigger, triggers, violated
 from fricmb.integrate.constrained.forces import is_open
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
@@ -49,6 +49,49 @@ def from_touch(st: Stages, out: Watch, j: int, h: float, rate: float) -> float:
 
 
 @kernel
+def has_series(st: Stages) -> bool:
+    """Whether there is a series of the step."""
+    return bool(st.series.terms > 0)
+
+
+@kernel
+def at_series(mech: Mech, k: Moving, end: State, st: Stages, out: Watch, j: int, h: float) -> float:
+    """Trigger j of a port a time h behind the start of the series; the port's forces and slip go into ``end``."""
+    se, c = st.series, j // 2
+    at, F, N, g = h / se.length, 0.0, 0.0, 0.0
+    for i in range(se.terms - 1, -1, -1):
+        F, N, g = F * at + se.F[i, c], N * at + se.N[i, c], g * at + se.g[i, c]
+    end.F[c], end.N[c], end.g[c] = F, N, g
+    return port_trigger(mech, k, out, end.mode, end.n, end.F, end.N, end.g, j)
+
+
+@kernel
+def by_series(mech: Mech, k: Moving, end: State, st: Stages, out: Watch, j: int, low: float, high: float) -> float:
+    """Where the series of trigger j passes through 0 between two lengths of the step (Illinois), or -1."""
+    f_low = at_series(mech, k, end, st, out, j, low)
+    f_high = at_series(mech, k, end, st, out, j, high)
+    if not (f_low > 0.0 > f_high):
+        return -1.0
+    side, root = 0, low
+    for _ in range(60):
+        root = low + (high - low) * (f_low / (f_low - f_high))
+        value = at_series(mech, k, end, st, out, j, root)
+        if not low < root < high or value == 0.0:
+            break
+        if value < 0.0:
+            high, f_high = root, value
+            f_low *= 0.5 if side == 1 else 1.0
+            side = 1
+        else:
+            low, f_low = root, value
+            f_high *= 0.5 if side == 2 else 1.0
+            side = 2
+        if high - low <= EPS * high:
+            break
+    return root
+
+
+@kernel
 def is_load(j: int, y: State) -> bool:
     """Whether trigger j is the load of a contact: by Hertz it is next to nothing long before it is 0."""
     return bool(j < 2 * y.mode.shape[0] and j % 2 == 1)
@@ -85,7 +128,11 @@ def locate_trigger(
     guess, slope = by_polynomial(st, out, first, h) if inside >= 1.0 and exact else (-1.0, 0.0)
     if is_open(mech, first - n_slips) and out.inner[0, first] <= 10.0 * grain(mech, out, first, y):
         guess, slope = from_touch(st, out, first, h, opens), 0.0
+    of_series = has_series(st)
     for i in range(80):
+        root = by_series(mech, k, end, st, out, j, low, high) if of_series and j < n_slips else -1.0
+        if root > 0.0:
+            guess, slope = root, 0.0
         gap = f_low - f_high
         step = low + (high - low) * (f_low / gap if gap > 0.0 and f_high < 0.0 and f_low > 0.0 else 0.5)
         if i % 8 == 7:
@@ -116,7 +163,9 @@ def locate_trigger(
             j = worst
             high, f_high, f_low = step, min(out.trigger[j], 0.0), 0.0
             continue
-        if abs(value) <= (0.0 if is_load(j, y) else limit) or high - low <= 8.0 * EPS * max(abs(y.t), abs(h)):
+        if is_load(j, y) and not of_series:
+            limit = 0.0
+        if abs(value) <= limit or high - low <= 8.0 * EPS * max(abs(y.t), abs(h)):
             break
         if is_open(mech, j - n_slips):
             slope = out.rate[j - n_slips]
