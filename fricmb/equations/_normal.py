@@ -78,7 +78,7 @@ def derive_normal(law: Any) -> tuple[dict[str, Any], str]:
     """Facts and kernel: x = [e, e'], out = [N, dN/de, dN/de', V, dV/de]; where N is 0, what stands for it is below 0.
 
     V is the potential of N - N(0, 0) on both bodies at e' = 0, with N cut at 0: an antiderivative up to the opening, a
-    constant force from there on.  The opening is found by bisection between 0 and e.
+    constant force from there on.  The opening is found by bisection between 0 and e.  Fact "linear": whether N is.
     """
     title = type(law).__name__
     e, rate, N, parameters = normal_expression(law)
@@ -123,4 +123,9 @@ def derive_normal(law: Any) -> tuple[dict[str, Any], str]:
         "out[3] = at_zero*x0 - (stored - stored_at_zero)",
         "out[4] = at_zero - max(force, 0.0)",
     ]
-    return {}, _code.module(title, lines)
+    return {"linear": is_linear(outputs[1], outputs[2], {e, rate})}, _code.module(title, lines)
+
+
+def is_linear(by_e: Any, by_rate: Any, arguments: set[Any]) -> bool:
+    """Whether a force with these slopes is linear in its arguments, as SymPy has it and not by values."""
+    return not (by_e.free_symbols | by_rate.free_symbols) & arguments

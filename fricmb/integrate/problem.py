@@ -210,6 +210,8 @@ class Contacts(Kept):
         Contact k owns the internal states ``z_start[k]:z_start[k+1]``.
     normal : (n_c,) int8
         NORMAL_CONSTANT, NORMAL_EXPRESSION, NORMAL_LAW or NORMAL_REACTION.
+    straight : (n_c,) bool
+        Whether the normal force is known to be linear in e and e' before it is cut at 0 (empty: nothing is known).
     N : (n_c,)
         The constant normal force; for the other kinds unused.
     normal_table : Templates
@@ -234,6 +236,7 @@ class Contacts(Kept):
     knots: Floats = field(default_factory=lambda: _f(0))
     z_start: Ints = field(default_factory=lambda: _i(1))
     normal: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
+    straight: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=bool))
     N: Floats = field(default_factory=lambda: _f(0))
     normal_table: Templates = field(default_factory=Templates)
     Wn: Floats

@@ -67,6 +67,7 @@ class ContactArrays:
     piecewise: list[bool] = field(default_factory=list)
     knots: list[tuple[float, ...]] = field(default_factory=list)
     normal: list[int] = field(default_factory=list)
+    straight: list[bool] = field(default_factory=list)
     N: list[float] = field(default_factory=list)
     normal_table: TableBuilder = field(default_factory=TableBuilder)
     normal_rows: list[Row] = field(default_factory=list)
@@ -85,8 +86,8 @@ class ContactArrays:
         """See :class:`Growing`."""
         return (
             self.rows, self.w, self.law, self.law_table.entries, self.mu_s, self.mu_0, self.lean, self.piecewise,
-            self.knots, self.normal, self.N, self.normal_table.entries, self.normal_rows, self.N0, self.labels,
-            self.states, self.scale, self.names,
+            self.knots, self.normal, self.straight, self.N, self.normal_table.entries, self.normal_rows, self.N0,
+            self.labels, self.states, self.scale, self.names,
         )  # fmt: skip
 
     def marks(self) -> tuple[int, ...]:
@@ -128,6 +129,7 @@ class ContactArrays:
             self.scale.append(UNIT[len(labels)])
             self.labels.append(labels)
             self.normal.append(NORMAL_CONSTANT)
+            self.straight.append(True)
             self._normal(contact.normal_force, NO_ROW, 0.0)
             self._add_law(contact, contact.law, len(labels), contact.normal_force)
 
@@ -140,6 +142,7 @@ class ContactArrays:
         self.scale.append(UNIT[len(labels)])
         self.labels.append(labels)
         self.normal.append(NORMAL_REACTION)
+        self.straight.append(False)
         self.normal_table.add(NO_TEMPLATE)
         self._normal(0.0, NO_ROW, 0.0)
         self._add_law(joint, joint.friction, len(labels), 0.0)
@@ -205,6 +208,7 @@ class ContactArrays:
             template = normal_template(law)
             row = self.motions.row(direction.form)
             self.normal.append(NORMAL_LAW)
+            self.straight.append(bool(template.facts.get("linear", False)))
             self.normal_table.add(template.address, numbers(law), [row.value(), row.rate()])
             self._normal(0.0, row, float(value_of(law.preload)))
             bent = normal_bend_template(law)
@@ -213,11 +217,13 @@ class ContactArrays:
                 self.bends.append((bent, numbers(law), [given[i] for i in bent.facts["arguments"]]))
         elif kind == "constant":
             self.normal.append(NORMAL_CONSTANT)
+            self.straight.append(True)
             self.normal_table.add(NO_TEMPLATE)
             self._normal(max(0.0, float(value_of(contact.normal_force))), NO_ROW, 0.0)
         else:
             expression = value_expression(contact.normal_force, f"Contact {contact.name!r}: normal_force")
             self.normal.append(NORMAL_EXPRESSION)
+            self.straight.append(False)
             arguments = self.motions.arguments(expression)
             self.timed.append((expression.template, expression.parameters))
             bends = bend_expression(contact.normal_force, f"Contact {contact.name!r}: normal_force")
@@ -262,6 +268,7 @@ class ContactArrays:
             "knots": np.array([r for own in self.knots for r in own], dtype=float),
             "z_start": starts(self.states),
             "normal": np.array(self.normal, dtype=np.int8),
+            "straight": np.array(self.straight, dtype=bool),
             "N": np.array(self.N, dtype=float),
             "normal_table": self.normal_table.build(n, n_u),
             "N0": np.array(self.N0, dtype=float),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -212,3 +212,33 @@ def resting_blocks(rng: np.random.Generator) -> tuple[fm.Scene, list[tuple[float
     ]
     load = fm.Force("load", body.point("push"), axis="x", value=1.0)
     return fm.Scene("resting", [body, load, *contacts]), limits
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bumpy(fm.normal.NormalLaw):
+    """A spring with a bump that no coarse set of distances shows."""
+
+    stiffness: object
+
+    def define_normal(self, e, e_dot):
+        """Linear but for the bump."""
+        return self.preload - self.stiffness * e + 0.5 * sympy.exp(-(((e - 0.013) / 0.002) ** 2))
+
+    def define_stored(self, e):
+        """Its integral."""
+        bump = 0.5 * 0.002 * sympy.sqrt(sympy.pi) / 2 * sympy.erf((e - 0.013) / 0.002)
+        return self.preload * e - self.stiffness * e**2 / 2 + bump
+
+
+def test_a_law_that_bends_anywhere_has_no_series() -> None:
+    """What is linear is known from its formula, not from values."""
+    bumpy = replaced(pad(mu_s=0.5, mu_k=0.5), Bumpy(axis="y", stiffness=STIFFNESS, preload=PRELOAD))
+    assert fm.simulate(bumpy, t_end=0.5, rtol=1e-6, method="radau").stats.n_lu > 0
+    straight = replaced(pad(mu_s=0.5, mu_k=0.5), fm.normal.Spring(axis="y", stiffness=STIFFNESS, preload=PRELOAD))
+    assert fm.simulate(straight, t_end=0.5, rtol=1e-6, method="radau").stats.n_lu == 0
+
+
+def replaced(scene: fm.Scene, press: fm.normal.NormalLaw) -> fm.Scene:
+    """The scene with another law of normal forces."""
+    parts = [replace(part, normal_force=press) if isinstance(part, fm.Contact) else part for part in scene.parts]
+    return fm.Scene("pad", parts)

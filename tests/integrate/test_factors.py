@@ -1,4 +1,4 @@
-"""Factors of stages serve steps almost as long without joints or a series, and no others: counted, and against finer runs."""
+"""Factors serve steps almost as long without joints or a series, and no others: counted, and against finer runs."""
 
 import numpy as np
 import pytest

@@ -35,6 +35,7 @@ from fricmb.integrate.constrained.radau_step import (
     try_step,
 )
 from fricmb.integrate.constrained.recorder import Record, copy_state, record_step
+from fricmb.integrate.constrained.series_step import forget_inputs
 from fricmb.integrate.constrained.singular_position import (
     SUSPECTED,
     has_come_near,
@@ -203,6 +204,7 @@ def radau_step(
     kept = may_keep(mech, k, y, st, c, h)
     if not kept:
         c.made = 0.0
+    forget_inputs(st)
     solved = try_step(mech, k, y, st, c, h)
     if kept and not solved:
         c.made = 0.0

@@ -89,7 +89,7 @@ def _made(problem: Problem, m: Mechanism) -> DenseRows | None:
         return None
     if (contacts.law != LAW_CONSTANT).any() or (m.M.row != m.M.column).any() or m.least_mass.size:
         return None
-    if not np.isin(contacts.normal, (NORMAL_CONSTANT, NORMAL_LAW)).all():
+    if not (contacts.straight.size and contacts.straight.all()):
         return None
     mass = np.zeros(n)
     mass[m.M.row] = m.M.value
@@ -108,20 +108,14 @@ def _made(problem: Problem, m: Mechanism) -> DenseRows | None:
     )  # fmt: skip
 
 
-#: Distances and rates at which a law of normal forces is asked whether it is linear, which it says by its slopes.
-_ASKED = np.array([(e, rate) for e in (-1e3, -1e-3, -1e-6, 0.0, 1e-6, 1e-3, 1e3) for rate in (-1.0, 0.0, 1.0)])
-
-
 def _loads(problem: Problem) -> tuple[Floats, Floats, Floats, Floats, Floats] | None:
-    """Distances by q and u, loads at distance 0, and their slopes; None where a load is not linear."""
+    """Distances by q and u, loads at distance 0, and their slopes; None where a rate is not that of its distance."""
     contacts, n, n_u = problem.contacts, problem.n, problem.n_u
     table = contacts.normal_table
     P, Pu = np.zeros((problem.n_c, n)), np.zeros((problem.n_c, n_u))
     offset, stiff, damp = np.where(contacts.normal == NORMAL_CONSTANT, contacts.N, 0.0), *np.zeros((2, problem.n_c))
     for c in np.flatnonzero(contacts.normal == NORMAL_LAW).tolist():
-        value, by_e, by_rate, *_ = evaluate(table, c, _ASKED, 5)
-        if np.any(by_e != by_e[0]) or np.any(by_rate != by_rate[0]):
-            return None
+        value, by_e, by_rate, *_ = (float(x[0]) for x in evaluate(table, c, np.zeros((1, 2)), 5))
         x0 = int(table.x_start[c])
         X = np.zeros((2, 1 + 2 * n + 2 * n_u))
         for row in range(2):
@@ -134,6 +128,6 @@ def _loads(problem: Problem) -> tuple[Floats, Floats, Floats, Floats, Floats] | 
             return None
         if table.form_constant[x0 + 1] != 0.0:
             return None
-        stiff[c], damp[c] = by_e[0], by_rate[0]
-        offset[c] = value[len(value) // 2] + stiff[c] * table.form_constant[x0]
+        stiff[c], damp[c] = by_e, by_rate
+        offset[c] = value + by_e * table.form_constant[x0]
     return P, Pu, offset, stiff, damp

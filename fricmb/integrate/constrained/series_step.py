@@ -32,6 +32,8 @@ from fricmb.integrate.problem import NORMAL_LAW, OPEN, SLIP, STICK, Floats, Floa
 GROWN = 1e3
 #: Part of what a step may err by that the last terms may have: forces are of lower order than velocities.
 REST = 1e-3
+#: Part of what a signal changes by in a step that its bends may have where it counts as a straight line.
+STRAIGHT = 1e-12
 #: Round-off of the last terms.
 FINEST = 1e-17
 
@@ -64,6 +66,7 @@ def put_inputs(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
     """Monomials of prescribed signals and of their rates in the step, by their values at its start and its stages."""
     se, n = st.series, y.q.shape[0]
     n_u, s = k.s.ddu.shape[0], st.tab.c.shape[0]
+    se.bent = 0
     if n_u == 0:
         return
     for i in range(s + 1):
@@ -74,10 +77,14 @@ def put_inputs(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
     for j in range(s + 1):
         for b in range(2 * n_u):
             # of a constant the rest is 0, not round-off
-            value = 0.0
+            value, size = 0.0, 0.0
             for i in range(1, s + 1):
                 value += st.tab.basis[j, i] * (se.signal[i, b] - se.signal[0, b])
+                size = max(size, abs(se.signal[i, b] - se.signal[0, b]))
             se.u[j, b] = value + (se.signal[0, b] if j == 0 else 0.0)
+            # a position that is linear in time, and a rate that is constant, are the same in any step
+            if j > (1 if b < n_u else 0) and abs(value) > STRAIGHT * size:
+                se.bent = 1
 
 
 @kernel
@@ -206,6 +213,13 @@ def sum_rates(x: Floats2, order: int, count: int, at: float, h: float, out: Floa
             factor *= (j + 2.0) / h
         for a in range(out.shape[0]):
             out[a] = out[a] * at + factor * line[a]
+
+
+@kernel
+def forget_inputs(st: Stages) -> None:
+    """Let a new step have a series of its own where signals bend: their monomials in a longer one may be worse."""
+    if st.series.bent == 1:
+        st.series.terms = 0
 
 
 @block

@@ -46,14 +46,16 @@ from fricmb.integrate.step.tableau import Tableau
 class Series(Layout):
     """Terms of a Taylor series over ``length`` from ``begin`` on, ``terms`` of them (0: there is none), in t/length.
 
-    ``x`` (., n) of positions, ``path`` (., r) of rows (see ``dense_rows``), ``N``, ``F``, ``g`` of loads, friction and
-    slip velocities; ``u`` (s+1, 2 n_u) of signals and their rates, by values ``signal`` at 0, c.  ``along`` (n_c,)
-    modes as numbers, ``mu`` coefficients; ``held`` what sticks; ``force`` (r,) along rows; ``f``, ``acc`` (n,) space.
+    ``bent`` 1 where signals are no straight lines.  ``x`` (., n) of positions, ``path`` (., r) of rows (see
+    ``dense_rows``), ``N``, ``F``, ``g`` of loads, friction and slip velocities; ``u`` (s+1, 2 n_u) of signals and their
+    rates, by values ``signal`` at 0, c.  ``along`` (n_c,) modes as numbers, ``mu`` coefficients; ``held`` what sticks;
+    ``force`` (r,) along rows; ``f``, ``acc`` (n,) space.
     """
 
     begin: float
     length: float
     terms: int
+    bent: int
     x: Floats2
     path: Floats2
     N: Floats2
@@ -79,7 +81,7 @@ def series_of(problem: Problem, stages: int) -> Series:
     n, rows, n_u = (problem.n, problem.m, problem.n_u) if some else (0, 0, 0)
     terms = TERMS if some else 0
     return Series(
-        0.0, 0.0, 0, np.zeros((terms + 2, n)), np.zeros((terms + 2, 2 * rows)), np.zeros((terms, rows)),
+        0.0, 0.0, 0, 0, np.zeros((terms + 2, n)), np.zeros((terms + 2, 2 * rows)), np.zeros((terms, rows)),
         np.zeros((terms, rows)), np.zeros((terms, rows)), np.zeros((stages + 1, 2 * n_u)),
         np.zeros((stages + 1, 2 * n_u)), np.zeros(rows), np.zeros(rows), held_of(rows), np.zeros(2 * rows),
         np.zeros(n), np.zeros(n),
