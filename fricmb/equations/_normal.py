@@ -123,9 +123,9 @@ def derive_normal(law: Any) -> tuple[dict[str, Any], str]:
         "out[3] = at_zero*x0 - (stored - stored_at_zero)",
         "out[4] = at_zero - max(force, 0.0)",
     ]
-    return {"linear": is_linear(outputs[1], outputs[2], {e, rate})}, _code.module(title, lines)
+    return {"linear": is_linear(N, e, rate)}, _code.module(title, lines)
 
 
-def is_linear(by_e: Any, by_rate: Any, arguments: set[Any]) -> bool:
-    """Whether a force with these slopes is linear in its arguments, as SymPy has it and not by values."""
-    return not (by_e.free_symbols | by_rate.free_symbols) & arguments
+def is_linear(N: Any, e: Any, rate: Any) -> bool:
+    """Whether a force is a polynomial of degree 1 at most: slopes alone would not tell of one that jumps."""
+    return bool(N.is_polynomial(e, rate)) and sympy.Poly(N, e, rate).total_degree() <= 1

@@ -109,13 +109,15 @@ def _made(problem: Problem, m: Mechanism) -> DenseRows | None:
 
 
 def _loads(problem: Problem) -> tuple[Floats, Floats, Floats, Floats, Floats] | None:
-    """Distances by q and u, loads at distance 0, and their slopes; None where a rate is not that of its distance."""
+    """Distances by q and u, loads at distance 0, and their slopes; None where they are not those of springs."""
     contacts, n, n_u = problem.contacts, problem.n, problem.n_u
     table = contacts.normal_table
     P, Pu = np.zeros((problem.n_c, n)), np.zeros((problem.n_c, n_u))
     offset, stiff, damp = np.where(contacts.normal == NORMAL_CONSTANT, contacts.N, 0.0), *np.zeros((2, problem.n_c))
     for c in np.flatnonzero(contacts.normal == NORMAL_LAW).tolist():
         value, by_e, by_rate, *_ = (float(x[0]) for x in evaluate(table, c, np.zeros((1, 2)), 5))
+        if value != contacts.N0[c]:
+            return None  # what bodies feel beside its potential would be work of nobody
         x0 = int(table.x_start[c])
         X = np.zeros((2, 1 + 2 * n + 2 * n_u))
         for row in range(2):

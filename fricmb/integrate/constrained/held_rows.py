@@ -88,7 +88,7 @@ def put_forces(mech: Mech, k: Moving, held: Held) -> None:
 @block
 @long_loops
 def react_at_rows(mech: Mech, k: Moving, y: State, held: Held) -> bool:
-    """Accelerations and friction forces of the modes at X; False where what sticks is nearly redundant.
+    """Accelerations and friction forces of the modes at X; False where there are none, or some are nearly redundant.
 
     Once by the mobility of what sticks, and once more for the round-off of that.
     """
@@ -115,7 +115,10 @@ def react_at_rows(mech: Mech, k: Moving, y: State, held: Held) -> bool:
         for i in range(y.a.shape[0]):
             y.a[i] += mech.dense.inverse[i] * k.fy[i]
     k.ddy[:] = 0.0
-    return True
+    sound = 0.0
+    for i in range(y.a.shape[0]):
+        sound += 0.0 * y.a[i]
+    return bool(sound == 0.0)
 
 
 @block

@@ -108,23 +108,21 @@ def solve_limited(D: Floats2, b: Floats, limit: Floats, state: Codes, x: Floats)
     return False
 
 
-@block
-def release_in_turn(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int) -> bool:
-    """Modes and directions of all ports at rest; False where loads follow from friction, or some are redundant.
-
-    ``forced`` (or -1), and what LETS_GO in ``part``, has let go already.
-    """
-    rows = np.zeros(part.shape[0], np.int64)
-    count = list_resting(mech, y, part, rows)
+@kernel
+def find_forces(
+    mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int, rows: Ints, state: Codes
+) -> bool:  # fmt: skip
+    """Where the forces of the ports in ``rows`` are, one after the other having let go; they are open meanwhile."""
+    count = state.shape[0]
     held = np.full(part.shape[0], SLIP, np.int8)
     for i in range(count):
         held[rows[i]] = STICK
         y.mode[rows[i]] = OPEN
-    if count == 0 or not react(mech, k, w, y, False):
+    if not react(mech, k, w, y, False):
         return False
     whole = mobility(mech, k, w, y, held, np.zeros((y.F.shape[0], 0)))
     D, b, x = np.zeros((count, count)), np.zeros(count), np.zeros(count)
-    most, least, state = np.zeros(count), np.zeros(count), np.zeros(count, np.int8)
+    most, least = np.zeros(count), np.zeros(count)
     for i in range(count):
         c = rows[i]
         load = max(y.N[c], 0.0)
@@ -146,10 +144,24 @@ def release_in_turn(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, fo
                 worst, over = i, abs(x[i]) / max(most[i], 1e-300)
         if worst >= 0:
             state[worst] = WITHIN
-    for i in range(count):
+    return True
+
+
+@block
+def release_in_turn(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int) -> bool:
+    """Modes and directions of all ports at rest; False where loads follow from friction, or some are redundant.
+
+    ``forced`` (or -1), and what LETS_GO in ``part``, has let go already.
+    """
+    rows = np.zeros(part.shape[0], np.int64)
+    state = np.zeros(list_resting(mech, y, part, rows), np.int8)
+    before = y.mode.copy()
+    found = state.shape[0] > 0 and find_forces(mech, k, w, y, part, forced, rows, state)
+    y.mode[:] = before
+    for i in range(state.shape[0] if found else 0):
         c = rows[i]
         slips = state[i] == LOW or state[i] == HIGH
         y.mode[c] = SLIP if slips else STICK
         if slips:
             y.n[mech.port.row[c]] = -1.0 * state[i]
-    return True
+    return bool(found)

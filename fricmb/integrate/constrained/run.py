@@ -301,7 +301,8 @@ def _slip_of_drivers(problem: Problem, start: Start, t_end: float, limits: Longe
         return 0.0
     t = start.t + np.array(LATER) * (t_end - start.t)
     if limits is not None:
-        middle = 0.5 * (limits.edge[:-1] + limits.edge[1:])
+        edge = np.clip(limits.edge, start.t, t_end)
+        middle = 0.5 * (edge[:-1] + edge[1:])
         shortest = np.argsort(np.abs(limits.longest), kind="stable")[:BRIEFEST]
         within = middle[shortest]
         t = np.append(t, within[(within > start.t) & (within < t_end)])

@@ -187,7 +187,7 @@ def expand(mech: Mech, k: Moving, y: State, st: Stages, h: float, accuracy: floa
         if not largest < GROWN:
             return False
         quiet = quiet + 1 if largest <= max(REST * accuracy, FINEST) else 0
-        if quiet == 2 and j + 1 >= se.u.shape[0]:
+        if quiet >= 2 and j + 1 >= se.u.shape[0]:
             se.terms = j + 1
             return True
     return False
