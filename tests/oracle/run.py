@@ -412,7 +412,9 @@ class Run:
         a, b, here = max(k - 1, 0), k + 1, column[k]
         if k == len(times) - 2 and column[b] < here:
             a, here = k, column[b]
-        if here > min(column[a], column[b]) or here >= 0.3 * max(column[a], column[b]):
+        # a crest half-way between two samples is as low at both, and at the ends nothing is known of a third
+        far = column[max(k - 1, 0) : k + 3].max()
+        if here > min(column[a], column[b]) or here >= 0.3 * far:
             return None
         found = minimize_scalar(value, bounds=(times[a], times[b]), method="bounded", options={"xatol": 1e-12})
         return float(found.x)

@@ -148,6 +148,47 @@ def release_groups(net: Net) -> None:
 
 
 @kernel
+def is_consistent(net: Net, gi: int) -> bool:
+    """Whether all contacts at rest of a group hold what they can, or move against their friction."""
+    groups = net.groups
+    for a in range(groups.group_start[gi], groups.group_start[gi + 1]):
+        c = groups.group_contact[a]
+        if groups.rests[c] == 0 or groups.planar[c] == SECOND:
+            continue
+        if net.mode[c] == STICK:
+            held = abs(groups.F[0, c]) if groups.planar[c] < 0 else math.hypot(groups.F[0, c], groups.F[0, c + 1])
+            if held > net.stick[c] * (1.0 + MARGIN):
+                return False
+        elif groups.planar[c] < 0 and net.sigma[c] * relative_row(net, c, 1, net.step) < 0.0:
+            return False
+    return True
+
+
+@kernel
+def hold_again(net: Net) -> None:
+    """Hold those let go in one group that need not slip, as others have let go since.
+
+    With more friction at rest than in slip both may be consistent: contacts let go only where they have to.
+    """
+    groups = net.groups
+    for gi in range(groups.n_stuck.shape[0]):
+        first, last, released = groups.group_start[gi], groups.group_start[gi + 1], 0
+        for a in range(first, last):
+            c = groups.group_contact[a]
+            released += 1 if groups.rests[c] == 1 and groups.planar[c] < 0 and net.mode[c] == SLIP else 0
+        for a in range(first, last if released > 1 else first):
+            c = groups.group_contact[a]
+            if released > 1 and groups.rests[c] == 1 and groups.planar[c] < 0 and net.mode[c] == SLIP:
+                set_mode(net, c, STICK, net.sigma[c])
+                taylor_series(net, net.step)
+                if is_consistent(net, gi):
+                    released -= 1
+                else:
+                    set_mode(net, c, SLIP, net.sigma[c])
+                    taylor_series(net, net.step)
+
+
+@kernel
 def keep_sliding(net: Net, h: float) -> bool:
     """Let what slid when the run before ended slide on, though it has next to no speed yet, where it speeds up.
 
@@ -190,6 +231,7 @@ def settle(net: Net, given: bool, known: bool) -> None:
     taylor_series(net, h)
     release_plain(net)
     release_groups(net)
+    hold_again(net)
     for c in range(net.mode.shape[0]):
         if net.groups.planar[c] == SECOND:
             continue
