@@ -21,8 +21,9 @@ from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Float
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.step.crossing import first_below
 
-#: Forces at the stages are of lower order than velocities: this part of their size, between them, is no sign.
-ROUGH = 5e-7
+#: Forces at the stages are of lower order than velocities: this part of their size, between them, is no sign, times the
+#: tolerance (Newton leaves a fiftieth of that), but from 1e-5 on no more than ROUGHEST, lest excursions be lost.
+ROUGH, ROUGHEST, FINEST = 0.05, 5e-7, 1e-10
 
 
 @kernel
@@ -224,7 +225,7 @@ def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, share
         if jumps or not is_smooth(mech, k, j, y, st):
             continue
         fine = is_slip(j, y) or is_open(mech, j - 2 * y.mode.shape[0])
-        hair = 10.0 * grain(mech, out, j, y) if fine else ROUGH * size_of_force(mech, k, out, j, y)
+        hair = 10.0 * grain(mech, out, j, y) if fine else out.hair * size_of_force(mech, k, out, j, y)
         if not fine:
             # in a short step forces of stages are round-off of velocities over the step
             hair += 2.0 * abs(out.trigger[j] - out.rough[j])

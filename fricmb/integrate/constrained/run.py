@@ -11,6 +11,7 @@ import numpy as np
 from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.constrained.bdf_history import Formula, formula_of, guard_at, no_formula, signals
 from fricmb.integrate.constrained.consistent_start import away, check_apart, consistent_start
+from fricmb.integrate.constrained.event_functions import FINEST, ROUGH, ROUGHEST
 from fricmb.integrate.constrained.failure_text import failure_text, held_notes
 from fricmb.integrate.constrained.impact import Impacts
 from fricmb.integrate.constrained.impulses import impulse_notes
@@ -133,6 +134,7 @@ def _set_up(
     for state in (y, workspace.end, workspace.before):
         set_out(state, start)
     c.rtol, c.mass[:], c.span[:] = tolerance.rtol, masses(m), (start.t, t_end)
+    workspace.out.hair = min(max(ROUGH * tolerance.rtol, FINEST), ROUGHEST)
     c.longest = c.bound = _longest_step(problem, t_end - start.t)
     c.q[:], c.v[:], c.z[:] = np.abs(start.q), np.abs(start.v), np.abs(start.z)
     if tolerance.atol_v is not None:

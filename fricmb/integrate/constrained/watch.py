@@ -29,7 +29,7 @@ class Watch(Layout):
     of open joints, its ``rate`` and round-off ``grain`` (``least``: at least), ``opened`` how many there are;
     ``bends`` (n_j,), ``kinked``
     (n_c,), ``kink``, ``side`` (m,): see ``load_kinks``; ``top_slip``, ``top_force``, ``top_position`` running maxima;
-    ``missed`` (n_c,): see ``load_defect``.
+    ``missed`` (n_c,): see ``load_defect``; ``hair`` part of a force that is no sign between stages.
     """
 
     margin: Floats
@@ -70,6 +70,7 @@ class Watch(Layout):
     top_position: float
     lam: Floats
     missed: Floats
+    hair: float
 
 
 def watch_of(problem: Problem, stages: int) -> Watch:
@@ -87,5 +88,5 @@ def watch_of(problem: Problem, stages: int) -> Watch:
         np.zeros(len(m.joints.port)),
         0, np.zeros(len(m.joints.port), np.int64),
         np.zeros(problem.n_c, np.int64), np.zeros(m.n_rows + 1), np.zeros(m.n_rows + 1), 0.0, 0.0, 0.0,
-        np.zeros(m.n_rows + 1), np.zeros(problem.n_c),
+        np.zeros(m.n_rows + 1), np.zeros(problem.n_c), 0.0,
     )  # fmt: skip
