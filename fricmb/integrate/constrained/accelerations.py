@@ -6,7 +6,6 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.constrained.dense_rows import put_path
 from fricmb.integrate.constrained.forces import (
     bend,
     call_joint,
@@ -218,10 +217,11 @@ def lost_in_dampers(mech: Mech, k: Moving, N: Floats) -> float:
     """Power that normal forces of dense rows take at X: those without damping none, being linear while they press."""
     dense, port, X = mech.dense, mech.port, k.s.X
     n, n_u, m, lost = k.ddy.shape[0], k.s.ddu.shape[0], N.shape[0], 0.0
-    put_path(dense.of, X[1 + n : 1 + 2 * n], k.rows[1])
     for c in range(m):
         if port.normal[c] == NORMAL_LAW and port.damped[c]:
-            rate = k.rows[1, m + c]
+            line, rate = dense.on[m + c], 0.0
+            for i in range(n):
+                rate += line[i] * X[1 + n + i]
             for b in range(n_u):
                 rate += dense.by_u[m + c, b] * X[1 + 2 * n + n_u + b]
             lost -= (max(N[c], 0.0) - port.N0[c]) * rate

@@ -48,6 +48,20 @@ def from_touch(st: Stages, out: Watch, j: int, h: float, rate: float) -> float:
     return x * h if 0.0 < x <= 1.0 else -1.0
 
 
+#: Which end of a bracket was moved last; neither yet.
+NEITHER, HIGH, LOW = 0, 1, 2
+
+
+@kernel
+def narrowed(
+    low: float, f_low: float, high: float, f_high: float, side: int, at: float, value: float, beyond: bool
+) -> tuple[float, float, float, float, int]:
+    """A bracket and the values at its ends, one of which is now ``at``; of an end that stays twice, half (Illinois)."""
+    if beyond:
+        return low, 0.5 * f_low if side == HIGH else f_low, at, min(value, 0.0), HIGH
+    return at, value, high, 0.5 * f_high if side == LOW else f_high, LOW
+
+
 @kernel
 def has_series(st: Stages) -> bool:
     """Whether there is a series of the step."""
@@ -72,20 +86,13 @@ def by_series(mech: Mech, k: Moving, end: State, st: Stages, out: Watch, j: int,
     f_high = at_series(mech, k, end, st, out, j, high)
     if not (f_low > 0.0 > f_high):
         return -1.0
-    side, root = 0, low
+    side, root = NEITHER, low
     for _ in range(60):
         root = low + (high - low) * (f_low / (f_low - f_high))
         value = at_series(mech, k, end, st, out, j, root)
         if not low < root < high or value == 0.0:
             break
-        if value < 0.0:
-            high, f_high = root, value
-            f_low *= 0.5 if side == 1 else 1.0
-            side = 1
-        else:
-            low, f_low = root, value
-            f_high *= 0.5 if side == 2 else 1.0
-            side = 2
+        low, f_low, high, f_high, side = narrowed(low, f_low, high, f_high, side, root, value, value < 0.0)
         if high - low <= EPS * high:
             break
     return root
@@ -120,7 +127,7 @@ def locate_trigger(
         gaps(mech, k, end.t, end.q, end.v, end.lam, out)
     triggers(mech, k, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
     high, f_high = h, min(out.trigger[j], 0.0)
-    side = 0
+    side = NEITHER
     step = h
     left = np.inf
     # where friction ends or begins; loads that set in or bend are found from both sides
@@ -172,14 +179,8 @@ def locate_trigger(
         elif j != first or abs(value) > BETTER * left:
             slope = 0.0
         left, guess = abs(value), (step - value / slope if slope < 0.0 else -1.0)
-        if value < 0.0 or worst >= 0:
-            high, f_high = step, min(value, 0.0)
-            f_low *= 0.5 if side == 1 else 1.0
-            side = 1
-        else:
-            low, f_low = step, value
-            f_high *= 0.5 if side == 2 else 1.0
-            side = 2
+        beyond = value < 0.0 or worst >= 0
+        low, f_low, high, f_high, side = narrowed(low, f_low, high, f_high, side, step, value, beyond)
     return step, j
 
 

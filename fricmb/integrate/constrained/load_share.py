@@ -23,7 +23,7 @@ from fricmb.integrate.constrained.group_cones import (
     units_of,
     without_idle,
 )
-from fricmb.integrate.constrained.loop_mobility import holds, may_share, mobility, rank
+from fricmb.integrate.constrained.loop_mobility import holds, is_independent, may_share, mobility, rank
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_rows import slip_speed
@@ -91,15 +91,12 @@ def share_load(
             limit[c] = part * stick_limit(mech.port, mech.port.laws, c, k.s, max(N[c], 0.0))
     answers = np.zeros((F.shape[0], lam.shape[0]))
     D = mobility(mech, k, w, y, held, answers)
-    count = 0
-    for c in range(n_c):
-        moves = 0
-        for a in range(mech.port.row[c], mech.port.row[c + 1]):
-            moves += 1 if D[a, a] > 0.0 else 0
-        held[c] = STICK if moves > 0 else SLIP
-        count += moves
-    if rank(D) == count:
+    if is_independent(D):
         return 0.0
+    for c in range(n_c):
+        held[c] = SLIP
+        for a in range(mech.port.row[c], mech.port.row[c + 1]):
+            held[c] = STICK if D[a, a] > 0.0 else held[c]
     if not reactions_are_free(mech):
         return share_cones(mech, k, held, N, F, lam, part, answers, D)
     before = F.copy()
@@ -212,11 +209,9 @@ def mark_loops(mech: Mech, k: Moving, w: Instant, y: State, part: Codes) -> None
         return
     move(mech, k, y.t, y.q, y.v)
     D = mobility(mech, k, w, y, held, np.zeros((y.F.shape[0], y.lam.shape[0])))
-    whole, count = rank(D), 0
-    for a in range(D.shape[0]):
-        count += 1 if D[a, a] > 0.0 else 0
-    if whole == count:
+    if is_independent(D):
         return
+    whole = rank(D)
     for c in range(part.shape[0]):
         if held[c] == STICK:
             rest = D.copy()

@@ -69,6 +69,15 @@ def mobility(mech: Mech, k: Moving, w: Instant, y: State, held: Codes, answers: 
 
 
 @kernel
+def is_independent(D: Floats2) -> bool:
+    """Whether none of the rows that count follows from others."""
+    count = 0
+    for a in range(D.shape[0]):
+        count += 1 if D[a, a] > 0.0 else 0
+    return bool(rank(D) == count)
+
+
+@kernel
 def rank(D: Floats2) -> int:
     """Rank of a Gram matrix whose rows are 0 where they do not count: elimination, the largest left first."""
     A, m, found = D.copy(), D.shape[0], 0
