@@ -14,9 +14,9 @@ from fricmb.integrate.collocation.root_along_step import exact_root
 from fricmb.integrate.collocation.sample import sample_exact
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.methods.blocks_of_run import load_core, where_it_bends
-from fricmb.integrate.methods.one_step import one_step_loop
 from fricmb.integrate.methods.run_setup import Collector, run_loop, set_accuracy
 from fricmb.integrate.methods.run_workspace import exact_step_workspace, run_workspace
+from fricmb.integrate.methods.time_loop import drive
 from fricmb.integrate.model.instant_workspace import InstantWorkspace
 from fricmb.integrate.model.problem_structs import packed_of
 from fricmb.integrate.output.row_trajectory import Chunk, RowTrajectory
@@ -94,4 +94,11 @@ def run_general(
         one.w.plain = run.rest.w.plain = int(plain)
         set_accuracy(run, tolerance)
         run.made = partial(ExactRun, exact=(s, exact_up_to))
-        return run_loop(run, run.begin(), one_step_loop(run, one), memory, progress)
+        return run_loop(run, run.begin(), _loop(run, one), memory, progress)
+
+
+def _loop(run: Collector, one: OneStep) -> Callable[[], int]:
+    """The loop over steps."""
+    return partial(
+        drive, run.packed, run.scratch, run.y, run.end, one, run.acc, run.rest, run.old, run.rows, run.clock, *run.seen,
+    )  # fmt: skip

@@ -2,50 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
 
-from fricmb.integrate.integrator import Tolerance, odd_stages
 from fricmb.integrate.methods.one_step import OneStepMethod
-from fricmb.integrate.methods.run_setup import follows_series, stages_for
 from fricmb.integrate.model.problem_structs import softness
-from fricmb.integrate.problem import Floats, Problem, Start
-from fricmb.integrate.run.stop import ended
+from fricmb.integrate.problem import Problem
 from fricmb.integrate.step.tableau import radau
-from fricmb.integrate.trajectory import Trajectory
-
-#: Rows of contacts (slip, normal forces that vary) below which steps of BDF are condensed to them.
-FEW = 16
-
-
-def in_a_band(problem: Problem, stages: int | None) -> bool:
-    """Whether ``radau`` and ``bdf`` solve steps for all unknowns in a band: with joints, and nearly all without.
-
-    Condensed to the contacts are steps of an even number of stages, and, with few contacts, those of scenes with
-    elements whose forces bend or jump: that what rests lets go at a jump is known to condensed steps alone.
-    """
-    if problem.mechanism is not None:
-        return True
-    if stages is not None and stages % 2 == 0:
-        return False
-    if not problem.bends.table.address.size:
-        return True
-    from fricmb.integrate.constrained import has_many_rows
-
-    return problem.m + problem.n_v >= FEW and has_many_rows(problem)
-
-
-def stopped_in_a_band(problem: Problem, run: Trajectory) -> bool:
-    """Whether a scene without joints could not be run in a band, as where contacts are nearly redundant."""
-    return problem.mechanism is None and run.failure is not None and not run.of_scene and ended() is None
-
-
-def condensed_after(stopped: Trajectory, run: Trajectory) -> Trajectory:
-    """The run by steps that are condensed to the contacts, which says that those in a band stopped."""
-    why = f"steps in a band stopped at t = {stopped.end.t:.6g}: {stopped.failure}; condensed ones did the run"
-    run.counters = replace(run.counters, notes=(*run.counters.notes, why))
-    return run
 
 
 def against_sharing(problem: Problem) -> str | None:
@@ -55,6 +19,7 @@ def against_sharing(problem: Problem) -> str | None:
     if problem.mechanism is None:
         shared = softness(problem) > 0.0
     else:
+        # slow to load
         from fricmb.integrate.constrained.problem_structs import leans_in_a_loop
 
         shared = leans_in_a_loop(problem)
@@ -64,7 +29,7 @@ def against_sharing(problem: Problem) -> str | None:
 
 @dataclass(frozen=True, kw_only=True)
 class Radau(OneStepMethod):
-    """Radau IIA of ``stages`` stages, order 2 stages - 1, on linear and nonlinear structures.
+    """Radau IIA of ``stages`` stages, order 2 stages - 1, on linear and nonlinear structures, with joints and without.
 
     Parameters
     ----------
@@ -74,43 +39,17 @@ class Radau(OneStepMethod):
 
     name: ClassVar[str] = "radau"
     order: ClassVar[str] = "2s - 1"
-    takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports", "nonlinear", "constraints"})
     two_limits: ClassVar[bool] = True
 
     stages: int | None = None
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""
-        odd = odd_stages(self.name, problem, self.stages)
-        return odd or against_sharing(problem) or super().refuses(problem)
+        return against_sharing(problem) or super().refuses(problem)
 
     def nodes(self, problem: Problem, rtol: float) -> Sequence[float]:
         """Right Radau points."""
+        # slow to load
+        from fricmb.integrate.constrained import stages_for
+
         return tuple(radau(stages_for(problem, rtol, self.stages)).c.tolist())
-
-    def integrate(
-        self,
-        problem: Problem,
-        start: Start,
-        t_end: float,
-        *,
-        tolerance: Tolerance,
-        step: float | None = None,
-        t_eval: Floats | None = None,
-        progress: Callable[[float], None] | None = None,
-        memory: float | None = None,
-    ) -> Trajectory:
-        """See :class:`Integrator`."""
-        # where measured values come thick, three stages do, and condensed steps of so few cost half
-        if in_a_band(problem, self.stages) and not (self.stages is None and follows_series(problem, tolerance.rtol)):
-            from fricmb.integrate import constrained
-
-            count = self.stages or constrained.stages_for(problem, tolerance.rtol)
-            run = constrained.run_mechanism(problem, start, t_end, tolerance, count, progress, memory)
-            if not stopped_in_a_band(problem, run):
-                return run
-            options: dict[str, Any] = {"progress": progress, "memory": memory}
-            return condensed_after(run, super().integrate(problem, start, t_end, tolerance=tolerance, **options))
-        return super().integrate(
-            problem, start, t_end, tolerance=tolerance, t_eval=t_eval, progress=progress, memory=memory
-        )

@@ -15,7 +15,7 @@ from fricmb.integrate.model.state import set_out
 from fricmb.integrate.model.structure import Structure
 from fricmb.integrate.output.recorder import rows, widths
 from fricmb.integrate.output.row_trajectory import RowTrajectory
-from fricmb.integrate.problem import Input, Problem, Start
+from fricmb.integrate.problem import Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAIL_MODES, FAIL_REDUNDANT, FAILURES, FULL
 from fricmb.integrate.run.stop import ended
@@ -23,14 +23,11 @@ from fricmb.integrate.signals.longest_steps import LongestSteps, steps_of_run
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
 from fricmb.integrate.step.stages import STIFF
 from fricmb.integrate.step.step_control import FREE, SAMPLED, first_step
-from fricmb.integrate.suits_taylor import against_taylor, fastest
 
 #: Rows that a kernel fills before they are taken out: so many, or so many bytes.
 CHUNK, CHUNK_BYTES = 4096, 1e6
 
 
-#: Stages where series make steps short, and values of series from which on that pays.
-ON_SERIES, MANY_KINKS = 3, 100
 #: What is no number to go on with: functions of time are asked 1e-300 behind a start at 0, where 1/t is 1e300.
 INFINITE = 1e290
 #: Part of a scene's natural velocities and positions that counts as noise.
@@ -113,37 +110,6 @@ class Collector:
         run = self.made(self.problem, self.chunks.parts, *found)
         run.rtol = float(self.acc.rtol)
         return run
-
-
-def stages_for(problem: Problem, rtol: float, wanted: int | None) -> int:
-    """Stages of the one-step method that are fastest at a tolerance (measured); many contacts make stages dear."""
-    if wanted is not None:
-        return wanted
-    if follows_series(problem, rtol):
-        return ON_SERIES
-    if problem.m + problem.n_z > 6:
-        return 3 if rtol > 1e-4 else 5 if rtol > 1e-9 else 7
-    return 3 if rtol > 1e-3 else 5 if rtol > 1e-5 else 6 if rtol > 1e-7 else 7
-
-
-def follows_series(problem: Problem, rtol: float) -> bool:
-    """Whether series of lines make steps so short that few stages reach a tolerance of the structure's motion.
-
-    Between its nodes a step of h of ON_SERIES = s stages errs by some (w h)^(s + 1) of a motion of frequency w, and by
-    nothing of loads that are lines.  More stages cost and bring nothing then.
-    """
-    kinks, inputs = problem.signals.kinks, problem.signals.inputs
-    if kinks.size < MANY_KINKS or not all(_is_lines(given) for given in inputs):
-        return False
-    if len(problem.elements.table.address) or against_taylor(problem) is not None:
-        return False
-    return bool(fastest(problem) * np.median(np.diff(kinks)) < 0.5 * rtol ** (1.0 / (ON_SERIES + 1)))
-
-
-def _is_lines(given: Input) -> bool:
-    """Whether an input is a series, and nothing else, that is linear between its values."""
-    alone = given.tape is not None and [operation[0] for operation in given.tape] == ["t", "series"]
-    return alone and all(table.degree <= 1 for table in given.tables)
 
 
 def run_loop(

@@ -9,7 +9,7 @@ ACCEPTED, REJECTED, CHANGED, DONE, FULL = range(5)
 #: Why a run cannot go on.
 FAIL_STEP, FAIL_MODES, FAIL_REDUNDANT, FAIL_CHATTER, FAIL_LAW, FAIL_INFINITE = range(5, 11)
 #: The same, of scenes with joints alone (``constrained/failure_text`` puts them into words).
-FAIL_SEVERAL, FAIL_MARGIN, FAIL_SINGULAR, FAIL_LOST, FAIL_PROJECT, FAIL_HIT, FAIL_CREEP = range(11, 18)
+FAIL_SEVERAL, FAIL_MARGIN, FAIL_SINGULAR, FAIL_LOST, FAIL_PROJECT, FAIL_HIT = range(11, 17)
 FAILURES = {
     FAIL_STEP: "the step size fell below round-off: the equations of the step could not be solved to tolerance",
     FAIL_MODES: "no consistent set of stick and slip was found for contacts at rest",
