@@ -46,7 +46,7 @@ class Formula(Layout):
 
 def formula_of(problem: Problem, start: Start, guard: BdfGuard) -> Formula:
     """Space for the steps of a run."""
-    base, one = room(state_of(problem)), room(stages_of(problem, one_stage()))
+    base, one = room(state_of(problem)), room(stages_of(problem, one_stage(), turning=False))
     set_out(base, start)
     q = np.array(start.q, float)
     return room(Formula(base, one, 0.0, 0.0, q, np.zeros_like(q), room(guard)))

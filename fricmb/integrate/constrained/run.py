@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,8 +18,8 @@ from fricmb.integrate.constrained.impact import Impacts
 from fricmb.integrate.constrained.impulses import impulse_notes
 from fricmb.integrate.constrained.least_change import names_of_rows
 from fricmb.integrate.constrained.moving import Moving
-from fricmb.integrate.constrained.problem_structs import masses, mech_of
-from fricmb.integrate.constrained.recorder import record_of, width
+from fricmb.integrate.constrained.problem_structs import Mech, masses, mech_of
+from fricmb.integrate.constrained.recorder import Record, record_of, width
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.constrained.step_trajectory import StepTrajectory, complete_at
 from fricmb.integrate.constrained.structure import mechanism_of, with_open
@@ -29,7 +30,7 @@ from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.methods.backward_differences import Differences, differences, no_differences
 from fricmb.integrate.methods.bdf_stability import BdfGuard
 from fricmb.integrate.model.state import set_out
-from fricmb.integrate.problem import LAW_SMOOTH, Floats, Problem, Start
+from fricmb.integrate.problem import LAW_SMOOTH, Codes, Floats, Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAILURES, FULL, SLICE_OVER
 from fricmb.integrate.run.stop import ended
@@ -48,6 +49,49 @@ PART = 0.05
 FURTHER = 10.0
 
 
+#: Attempted steps of BDF for the time of one of the one-step method with five stages: 2.0 to 4.2, median 3.3, on six of
+#: the models (pendulum, four-bar, slider crank, drive train, car axis, Andrews) at 1e-6 and 1e-8; with three stages 1.2
+#: to 2.5, median 1.9.
+COST = 3.3
+
+
+class Setting(NamedTuple):
+    """What a loop over steps works on: the run, its workspace, space for rows, and how long inputs let steps be."""
+
+    problem: Problem
+    start: Start
+    t_end: float
+    mech: Mech
+    workspace: RunWorkspace
+    record: Record
+    part: Codes
+    limits: LongestSteps
+
+
+def one_step_loop(setting: Setting) -> Callable[[], int]:
+    """Steps by the one-step formula alone."""
+    w = setting.workspace
+    return _drive(setting, no_differences(), no_formula(w.y, w.st))
+
+
+def bdf_loop(setting: Setting) -> Callable[[], int]:
+    """BDF between transitions, the one-step formula around them."""
+    load_blocks("multistep")
+    problem, start, w = setting.problem, setting.start, setting.workspace
+    guard = guard_at(problem, setting.mech, w.k, w.y, w.st)
+    stages = len(w.st.tab.c)
+    past = differences(signals(problem), setting.t_end - start.t, COST * stages / 5)
+    return _drive(setting, past, formula_of(problem, start, guard))
+
+
+def _drive(setting: Setting, past: Differences, formula: Formula) -> Callable[[], int]:
+    mech, (k, w, y, end, before, st, out, control) = setting.mech, setting.workspace
+    seen = setting.limits.edge, setting.limits.longest
+    return partial(
+        drive, mech, k, w, y, end, before, st, control, out, setting.record, setting.part, past, formula, *seen
+    )  # fmt: skip
+
+
 def run_mechanism(
     problem: Problem,
     start: Start,
@@ -57,11 +101,12 @@ def run_mechanism(
     progress: Callable[[float], None] | None,
     memory: float | None = None,
     *,
-    multistep: bool = False,
+    loop: Callable[[Setting], Callable[[], int]] | None = None,
+    made: type[StepTrajectory] = StepTrajectory,
 ) -> StepTrajectory:
     """Steps by a one-step formula, on the index-reduced system; see ``Integrator.integrate``.
 
-    ``multistep``: BDF between transitions, the formula around them.
+    ``loop``: what makes the loop over steps, by default :func:`one_step_loop`; ``made`` the trajectory in the end.
     """
     whole = problem
     if mechanism_of(problem).joints.hands_over.any():
@@ -78,16 +123,9 @@ def run_mechanism(
         with np.errstate(over="ignore", invalid="ignore"):  # what has no value at the start is named below
             small, reach = _set_up(workspace, problem, start, t_end, tolerance)
         mech, record, part = mech_of(problem), record_of(problem, stages, capacity), np.zeros(problem.n_c, np.int8)
-        k, w, y, end, before, st, out, control = workspace
-        past: tuple[Differences, Formula] = no_differences(), no_formula(y, st)
-        if multistep:
-            load_blocks("multistep")
-            past = _history(problem, start, t_end, stages, guard_at(problem, mech, k, y, st))
+        k, w, y, _, _, _, out, control = workspace
         limits = steps_of_run(problem, start.t, t_end, tolerance)
-        seen = limits.edge, limits.longest
-        stepping: partial[int] = partial(
-            drive, mech, k, w, y, end, before, st, control, out, record, part, *past, *seen
-        )  # fmt: skip
+        stepping = (loop or one_step_loop)(Setting(problem, start, t_end, mech, workspace, record, part, limits))
         chunks, impacts = Chunks(record, "values", "span", "force", "mode", "opened", "after"), None
         go_on: Callable[[], int] = stepping
         code = begin(mech, k, w, y, control, out, part, start.mode is not None, small, reach)
@@ -117,7 +155,7 @@ def run_mechanism(
     if impacts is not None:
         notes = (*notes, *impacts.notes)
         transitions = impacts.log.transitions(transitions, span[:, 0], opened, last.t)
-    return StepTrajectory(
+    return made(
         whole, span, values, force, mode, opened, after, transitions, counters(counts, notes), last, failure,
         np.concatenate([[0.0], tab.c]), tolerance.rtol,
     )  # fmt: skip
@@ -207,20 +245,6 @@ def _dropped_notes(m: Mechanism) -> tuple[str, ...]:
     listed = ", ".join(repr(name) for name in names_of_rows(m, rows))
     what = "reactions are of least norm, and no singular position is looked for"
     return (f"redundant constraints: {len(rows)} of {listed} follow(s) from the others; {what}",)
-
-
-#: Attempted steps of BDF for the time of one of the one-step method with five stages: 2.0 to 4.2, median 3.3, on six of
-#: the models (pendulum, four-bar, slider crank, drive train, car axis, Andrews) at 1e-6 and 1e-8; with three stages 1.2
-#: to 2.5, median 1.9.
-COST = 3.3
-
-
-def _history(
-    problem: Problem, start: Start, t_end: float, stages: int, guard: BdfGuard
-) -> tuple[Differences, Formula]:
-    """What BDF keeps of a run."""
-    past = differences(signals(problem), t_end - start.t, COST * stages / 5)
-    return past, formula_of(problem, start, guard)
 
 
 #: Forces of inertia that are nothing but the round-off of others; those of a load that grows from 0 at the start, which

@@ -136,8 +136,8 @@ class Stages(Layout):
 SLOTS, SLOT_BYTES = 16, 2e6
 
 
-def stages_of(problem: Problem, tab: Tableau) -> Stages:
-    """Arrays for the stages of a tableau."""
+def stages_of(problem: Problem, tab: Tableau, *, turning: bool = True) -> Stages:
+    """Arrays for the stages of a tableau; not ``turning``: steps near rest are left to another formula."""
     m, order, s = mechanism_of(problem), mech_of(problem).order, len(tab.c)
     size, band = len(order.place), length_of(order.sizes)
     nc, rows, nz, count, real = problem.n_c, problem.m, problem.n_z, len(tab.lam), len(tab.lam)
@@ -151,7 +151,7 @@ def stages_of(problem: Problem, tab: Tableau) -> Stages:
         np.zeros((slots, count, band), complex), np.zeros(slots * count * size, np.int32), np.zeros(slots), 0,
         np.zeros(size),
         np.zeros((count, size), complex), np.zeros(size, complex), np.zeros((s, nz)), np.zeros(size), np.ones(m.n), 0.0,
-        turns_of(problem, tab, size), steep_laws_of(problem, tab, m.n, size), felt_of(problem, s), 0,
+        turns_of(problem, tab, size, turning), steep_laws_of(problem, tab, m.n, size), felt_of(problem, s), 0,
         int(is_plain(problem)), series_of(problem, s),
     )  # fmt: skip
 

@@ -66,10 +66,10 @@ def turning_rows(problem: Problem) -> int:
     return min(int(np.maximum(np.diff(contacts.row) - 1, 0)[contacts.law != LAW_SMOOTH].sum()), TOGETHER)
 
 
-def turns_of(problem: Problem, tab: Tableau, size: int) -> Turns:
-    """Arrays for the contacts in several directions with set-valued laws."""
+def turns_of(problem: Problem, tab: Tableau, size: int, turning: bool) -> Turns:
+    """Arrays for the contacts in several directions with set-valued laws; not ``turning``: for none of them."""
     s = len(tab.c)
-    k = turning_rows(problem) if s > 1 else 0
+    k = turning_rows(problem) if turning else 0
     full = k * s
     return Turns(
         np.zeros(k, np.int64), np.zeros(k, np.int64), 0, np.zeros((k, 3)), np.zeros(k),

@@ -54,10 +54,11 @@ class Bdf(Integrator):
     ) -> Trajectory:
         """See :class:`Integrator`."""
         # slow to load
-        from fricmb.integrate.constrained import run_mechanism, stages_for
+        from fricmb.integrate.constrained import bdf_loop, run_mechanism, stages_for
 
         # without joints a steep law turns the force within a step, and with it the power, which no error test of BDF
         # watches: as many steps of Radau are far more accurate there
         steep = problem.mechanism is None and bool((problem.contacts.law == LAW_SMOOTH).any())
         around = radau(stages_for(problem, tolerance.rtol, self.stages))
-        return run_mechanism(problem, start, t_end, tolerance, around, progress, memory, multistep=not steep)
+        loop = None if steep else bdf_loop
+        return run_mechanism(problem, start, t_end, tolerance, around, progress, memory, loop=loop)

@@ -13,19 +13,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
-import numpy as np
-
-from fricmb.integrate.compile.room import room
 from fricmb.integrate.integrator import Integrator, Tolerance
-from fricmb.integrate.methods.bdf2_paper_step import Last, drive_paper
-from fricmb.integrate.methods.blocks_of_run import load_stages
-from fricmb.integrate.methods.run_setup import Collector, run_loop, set_accuracy
-from fricmb.integrate.methods.run_workspace import run_workspace, step_workspace
 from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.step.tableau import one_stage
 from fricmb.integrate.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from fricmb.integrate.constrained.run import Setting
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,17 +52,25 @@ class Bdf2Paper(Integrator):
         ValueError
             Where ``step`` is not given or not positive.
         """
+        # slow to load
+        from fricmb.integrate.constrained import run_mechanism
+        from fricmb.integrate.methods.paper_trajectory import PaperTrajectory
+
         if step is None or not step > 0.0:
             raise ValueError(f"bdf2-paper needs a step > 0, got {step!r}")
-        with run_workspace(problem) as workspace, step_workspace(problem, one_stage()) as (one,):
-            load_stages(problem, "solve_with")
-            run = Collector(problem, start, t_end, workspace, one)
-            # its equations are solved to round-off: their error is not to be seen beside that of the formula
-            acc = set_accuracy(run, Tolerance(rtol=1e-8))
-            code, y = run.begin(), run.y
-            values = np.zeros(2 * problem.n + problem.n_z)
-            last = room(Last(values, 0.0, y.mode.copy(), y.n.copy(), y.mode.copy()))
-            given = (run.packed, run.scratch, y, run.end, one, acc, last, run.rows, step, t_end)
-            found = run_loop(run, code, partial(drive_paper, *given), None, progress)
-            found.integrates = False  # its energies are those of its formula
-            return found
+        loop, tight = partial(_loop, step=step), Tolerance(rtol=1e-8)
+        return run_mechanism(
+            problem, start, t_end, tight, one_stage(), progress, None, loop=loop, made=PaperTrajectory
+        )
+
+
+def _loop(setting: Setting, step: float) -> Callable[[], int]:
+    """The loop over steps of a length."""
+    # slow to load
+    from fricmb.integrate.compile.parallel_compile import load_blocks
+    from fricmb.integrate.methods.bdf2_paper_step import drive_paper, last_of
+
+    load_blocks("solve_with", "find_modes")
+    k, w, y, end, before, st, out, control = setting.workspace
+    rooms = setting.mech, k, w, y, end, before, st, control, out, setting.record
+    return partial(drive_paper, *rooms, last_of(setting.problem), step)

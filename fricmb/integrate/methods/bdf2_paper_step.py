@@ -5,170 +5,200 @@ Kinkaid, O'Reilly and Papadopoulos (2005), Eqs. (12) to (14); see :mod:`~fricmb.
 
 from __future__ import annotations
 
+import numpy as np
+
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel, run_entry
 from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.compile.room import room
+from fricmb.integrate.constrained.accelerations import react
+from fricmb.integrate.constrained.attempt_step import grow
+from fricmb.integrate.constrained.moving import Moving
+from fricmb.integrate.constrained.near_rest import choose_forms, prepare_steep, prepare_turns
+from fricmb.integrate.constrained.problem_structs import Mech
+from fricmb.integrate.constrained.radau_step import Control, last_stage, measure, measure_states
+from fricmb.integrate.constrained.recorder import Record, copy_state, crowded, record_step
+from fricmb.integrate.constrained.slip_rows import aim, keep_held
+from fricmb.integrate.constrained.stage_newton import iterate_stages
+from fricmb.integrate.constrained.stages import Stages, bring_up_to_date, factor_stages, linearise
+from fricmb.integrate.constrained.state import Instant, State, state_of
+from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.contact.transition import record_changes
-from fricmb.integrate.methods.attempt_step import incomplete
-from fricmb.integrate.methods.time_loop import crowded
-from fricmb.integrate.model.accelerations import complete
-from fricmb.integrate.model.forces import Scratch, normal_force, set_instant
 from fricmb.integrate.model.friction_cone import cone_margin
-from fricmb.integrate.model.law_values import magnitude, point_along
-from fricmb.integrate.model.problem_structs import Packed
-from fricmb.integrate.model.state import State, copy_state
-from fricmb.integrate.output.recorder import AFTER, BEFORE, STEP, Rows, record
-from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats
-from fricmb.integrate.run.outcomes import DONE, FAIL_LAW, FAIL_STEP, FULL, SLICE_OVER
+from fricmb.integrate.model.law_values import point_along
+from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats, Problem
+from fricmb.integrate.run.outcomes import DONE, FAIL_MODES, FAIL_STEP, FULL, SLICE_OVER
 from fricmb.integrate.run.slices import slice_over, ticks
-from fricmb.integrate.step.one_step import newton_tolerances, prepare_at
-from fricmb.integrate.step.one_step_room import Accuracy, OneStep
-from fricmb.integrate.step.stage_predictor import contacts_from_start
-from fricmb.integrate.step.stages import solve_stages
+
+#: Matrices for a step at most, each from where the iterations with the one before have got to.
+TRIES = 5
+#: Part of what counts as 1 to which equations are solved: their error is not to be seen beside that of the formula.
+ACCURACY = 1e-11
 
 
 class Last(Layout):
-    """The step before: values ``y`` (n_y,), ``h`` its size (0: none), its modes and directions; trial modes."""
+    """The step before: positions, velocities and states at its start, ``h`` its length (0: none) and its modes.
 
-    y: Floats
+    ``base``: what the formula makes of the past; ``trial`` modes that are tried.
+    """
+
+    q: Floats
+    v: Floats
+    z: Floats
     h: float
     mode: Codes
-    n: Floats
     trial: Codes
+    base: State
+
+
+def last_of(problem: Problem) -> Last:
+    """Before the first step."""
+    n, nc = problem.n, problem.n_c
+    modes = np.zeros(nc, np.int8), np.zeros(nc, np.int8)
+    return room(Last(np.zeros(n), np.zeros(n), np.zeros(problem.n_z), 0.0, *modes, room(state_of(problem))))
 
 
 @kernel
-def formula(y: State, one: OneStep, last: Last, h: float, two: bool) -> float:
-    """Put the history of the step into psi; returns b h, of BDF2 (``two``) or backward Euler."""
-    n = y.q.shape[0]
-    h0 = last.h
+def formula(y: State, last: Last, h: float, two: bool) -> float:
+    """Put the history of the step into ``last.base``; returns b h, of BDF2 (``two``) or backward Euler."""
+    h0, base = last.h, last.base
     a1, a2, b = 0.0, 1.0, 1.0
     if two:
         a1 = -h * h / (h0 * (h0 + 2.0 * h))
         a2 = (h0 + h) ** 2 / (h0 * (h0 + 2.0 * h))
         b = (h0 + h) / (h0 + 2.0 * h)
-    for i in range(n):
-        one.st.psi_q[i] = a1 * last.y[i] + a2 * y.q[i]
-        one.st.psi_v[i] = a1 * last.y[n + i] + a2 * y.v[i]
-    for i in range(y.z.shape[0]):
-        one.w.psi_z[i] = a1 * last.y[2 * n + i] + a2 * y.z[i]
+    copy_state(y, base)
+    for before, here, past in ((last.q, y.q, base.q), (last.v, y.v, base.v), (last.z, y.z, base.z)):
+        for i in range(past.shape[0]):
+            past[i] = a1 * before[i] + a2 * here[i]
+    for c in range(y.mode.shape[0]):
+        base.mode[c] = last.trial[c]
     return b * h
 
 
 @block
-def solve_with(
-    packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy, last: Last, mode: Codes, h: float
-) -> bool:
-    """Solve the step for the given modes."""
-    st, w = one.st, one.w
-    same = last.h > 0.0
-    for k in range(mode.shape[0]):
-        if mode[k] != last.mode[k]:
-            same = False
-    beta_h = formula(y, one, last, h, same)
-    if not prepare_at(packed, s, y, one, beta_h, True):
-        return False
-    st.t[0] = y.t + h
-    st.hA[0, 0] = beta_h
-    for i in range(y.q.shape[0]):
-        st.V[0, i] = y.v[i]
-    contacts_from_start(packed, y, w, 0)
-    newton_tolerances(packed, acc, h, y, one.tol, one.scale, 1e-3)
-    one.counts[2] += 1
-    return solve_stages(packed, one.tab, s, one.fac, st, w, mode, one.tol, one.scale) > 0
+def solve_with(mech: Mech, k: Moving, y: State, end: State, st: Stages, c: Control, last: Last, h: float) -> float:
+    """Solve the step for the trial modes; b h of its formula, 0 where it is not solved.  ``end``: the Jacobian's."""
+    two = last.h > 0.0
+    for p in range(y.mode.shape[0]):
+        two = two and last.trial[p] == last.mode[p]
+    beta_h = formula(y, last, h, two)
+    base = last.base
+    base.t = y.t + h - beta_h
+    measure(mech, c, y, h, st.scale)
+    measure_states(c, y, h, st)
+    copy_state(y, end)
+    end.t = y.t + h
+    for p in range(y.mode.shape[0]):
+        end.mode[p] = last.trial[p]
+    c.counts[2] += 1
+    for part, target in ((y.v, st.V), (y.lam, st.lam), (y.F, st.F), (y.z, st.z)):
+        for i in range(part.shape[0]):
+            target[0, i] = part[i]
+    keep_held(mech, base.mode, y.F, st.F[0])
+    for attempt in range(TRIES):
+        # of a law that is steep the slopes are those of the stage
+        st.steep.on = 1 if attempt == TRIES - 1 and st.steep.row.shape[0] > 0 else 0
+        choose_forms(mech, k, end, st, beta_h)
+        linearise(mech, k, end, st)
+        if not factor_stages(mech, st, beta_h):
+            return 0.0
+        prepare_turns(mech, st)
+        prepare_steep(mech, st)
+        if iterate_stages(mech, k, base, st, beta_h, beta_h, ACCURACY) > 0:
+            bring_up_to_date(mech, k, base, st, beta_h)
+            return beta_h
+        # a fixed step may be long beside what turns the direction of slip: on with slopes from where this has got to
+        for part, target in ((end.q, st.Q), (end.v, st.V), (end.F, st.F), (end.z, st.z), (end.N, st.N), (end.g, st.g)):
+            for i in range(part.shape[0]):
+                part[i] = target[0, i]
+        aim(mech, end.mode, end.F, end.n)
+    return 0.0
 
 
 @kernel
-def revise(packed: Packed, s: Scratch, y: State, one: OneStep, mode: Codes) -> bool:
+def revise(mech: Mech, k: Moving, y: State, st: Stages, mode: Codes) -> bool:
     """Change the modes that the solution just found contradicts; True where there are any."""
-    ports, w = packed.ports, one.w
-    changed = False
-    set_instant(packed.signals, s, one.st.t[0], one.st.Q[0], one.st.V[0])
-    for k in range(mode.shape[0]):
-        if ports.var[k] >= 0:
-            N = normal_force(ports, packed.normals, k, s)
-            if (N <= 0.0) != (mode[k] == OPEN):
-                mode[k] = OPEN if N <= 0.0 else SLIP
-                changed = True
-                continue
-        if ports.law[k] == LAW_SMOOTH or mode[k] != STICK:
-            continue
-        if cone_margin(ports, packed.laws, k, s, w.F[0], w.N[0, k]) < 0.0:
-            mode[k] = SLIP
+    port, changed = mech.port, False
+    for c in range(mode.shape[0]):
+        N = st.N[0, c]
+        if port.normal[c] == NORMAL_LAW and (N <= 0.0) != (mode[c] == OPEN):
+            mode[c] = OPEN if N <= 0.0 else SLIP
             changed = True
-            point_along(ports.row, k, w.F[0], -1.0, y.n)
+            continue
+        if port.law[c] == LAW_SMOOTH or mode[c] != STICK:
+            continue
+        if cone_margin(port, port.laws, c, k.s, st.F[0], max(N, 0.0)) < 0.0:
+            mode[c] = SLIP
+            changed = True
+            point_along(port.row, c, st.F[0], -1.0, y.n)
     return changed
+
+
+@block
+def find_modes(mech: Mech, k: Moving, y: State, end: State, st: Stages, c: Control, last: Last, h: float) -> bool:
+    """Solve a step h from y, stick tried first; False where no modes are right."""
+    for p in range(y.mode.shape[0]):
+        free = SLIP if mech.port.law[p] == LAW_SMOOTH else STICK
+        last.trial[p] = OPEN if y.mode[p] == OPEN else free
+    for _ in range(3 * y.mode.shape[0] + 3):
+        if solve_with(mech, k, y, end, st, c, last, h) == 0.0:
+            return False
+        if not revise(mech, k, y, st, last.trial):
+            return True
+    return False
 
 
 @run_entry
 def drive_paper(
-    packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, last: Last, out: Rows, h: float,
-    t_end: float,
+    mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
+    rec: Record, last: Last, h: float,
 ) -> int:  # fmt: skip
-    """Step from y to ``t_end``, or until the space for rows is used up."""
-    n = y.q.shape[0]
-    begun = ticks()
+    """Step from y to the end of the span, or until the space for rows is used up or a slice is over."""
+    begun, t_end = ticks(), c.span[1]
     while True:
-        if crowded(out, 2, y.mode.shape[0]):
+        if crowded(rec, y.mode.shape[0]):
             return FULL
         left = t_end - y.t
         if left <= 1e-12 * max(abs(t_end), abs(y.t)):
             return DONE
         step = h if left > h * (1.0 + 1e-9) else left
-        for k in range(y.mode.shape[0]):
-            last.trial[k] = SLIP if packed.ports.law[k] == LAW_SMOOTH else (OPEN if y.mode[k] == OPEN else STICK)
-        settled = False
-        for _ in range(3 * y.mode.shape[0] + 3):
-            if not solve_with(packed, s, y, one, acc, last, last.trial, step):
-                return FAIL_STEP
-            if not revise(packed, s, y, one, last.trial):
-                settled = True
-                break
-        if not settled:
+        copy_state(y, before)
+        if not find_modes(mech, k, y, end, st, c, last, step):
             return FAIL_STEP
-        copy_state(y, end)
+        last_stage(mech, last.base, end, st)
         end.t = y.t + step if step < left else t_end
-        for i in range(n):
-            end.q[i] = one.st.Q[0, i]
-            end.v[i] = one.st.V[0, i]
-        for i in range(y.z.shape[0]):
-            end.z[i] = one.w.z[0, i]
-        for k in range(y.mode.shape[0]):
-            end.mode[k] = last.trial[k]
-        for a in range(y.n.shape[0]):
-            end.n[a] = one.w.n[0, a]
-        if not complete(packed, s, end, one.w.sizes, one.w.pivots):
-            return incomplete(end)
-        if end.fault > 0.0:
-            return FAIL_LAW
+        if not react(mech, k, w, end, False):
+            return FAIL_MODES
         for i in range(y.rate.shape[0]):
-            end.work[i] = y.work[i] + 0.5 * step * (y.rate[i] + end.rate[i])
+            c.power[0, i] = 0.5 * (y.rate[i] + end.rate[i])
+            end.work[i] = y.work[i] + step * c.power[0, i]
         # the published scheme takes the force from the step's own equations
         for a in range(y.F.shape[0]):
-            end.F[a] = one.w.F[0, a]
-        if record_changes(packed.ports, end.t, end, last, out):
-            for k in range(y.mode.shape[0]):
-                end.mode[k] = y.mode[k]
-            record(out, end, BEFORE)
-            for k in range(y.mode.shape[0]):
-                end.mode[k] = last.trial[k]
-            record(out, end, AFTER)
-        else:
-            record(out, end, STEP)
-        for i in range(n):
-            last.y[i] = y.q[i]
-            last.y[n + i] = y.v[i]
-            acc.q[i] = max(acc.q[i], abs(end.q[i]))
-            acc.v[i] = max(acc.v[i], abs(end.v[i]))
-        for i in range(y.z.shape[0]):
-            last.y[2 * n + i] = y.z[i]
-        for k in range(y.mode.shape[0]):
-            last.mode[k] = end.mode[k]
-            acc.r[k] = max(acc.r[k], magnitude(packed.ports.row, k, end.g))
-        for a in range(y.n.shape[0]):
-            last.n[a] = end.n[a]
-        last.h = step
-        one.counts[0] += 1
+            end.F[a] = st.F[0, a]
+        keep_step(mech, rec, y, end, before, st, c, last, step)
+        c.counts[0] += 1
         copy_state(end, y)
+        grow(mech, c, out, k, y)
         if slice_over(begun):
             return SLICE_OVER
+
+
+@kernel
+def keep_step(
+    mech: Mech, rec: Record, y: State, end: State, before: State, st: Stages, c: Control, last: Last, h: float
+) -> None:
+    """A row of the step, with its modes and forces, transitions at its end, and the history of the next one."""
+    for p in range(y.mode.shape[0]):
+        y.mode[p] = end.mode[p]
+    record_step(mech, rec, y, end, st, c, h)
+    for a in range(y.F.shape[0]):
+        rec.force[rec.used[0] - 1, a] = end.F[a]
+        rec.force[rec.used[0] - 1, y.F.shape[0] + a] = end.n[a]
+    record_changes(mech.port, end.t, end, before, rec)
+    for here, past in ((y.q, last.q), (y.v, last.v), (y.z, last.z)):
+        for i in range(past.shape[0]):
+            past[i] = here[i]
+    for p in range(y.mode.shape[0]):
+        last.mode[p] = end.mode[p]
+    last.h = h
