@@ -29,17 +29,17 @@ class PaperTrajectory(StepTrajectory):
 
     def _complete(
         self, t: Floats, values: Floats, step: Ints, *, project: bool = False, side: Floats | None = None,
-        still: Floats | None = None,
+        still: Floats | None = None, force: Floats | None = None,
     ) -> tuple[MotionSamples, Floats, Floats]:  # fmt: skip
         """As ``StepTrajectory``, with the forces of the scheme: linear between steps of the same modes."""
-        motion, stored, power = super()._complete(t, values, step, project=project, side=side, still=still)
+        motion, stored, power = super()._complete(t, values, step, project=project, side=side, still=still, force=force)
         if not len(self._span):
             return motion, stored, power
         m = self.problem.m
-        before, force = np.maximum(step - 1, 0), self._force[:, :m]
+        before, own = np.maximum(step - 1, 0), self._force[:, :m]
         x = ((t - self._span[step, 0]) / self._span[step, 1])[:, None]
         same = _same(self._mode, before, step)[:, None]
-        F = np.where(same, (1.0 - x) * force[before] + x * force[step], force[step])
+        F = np.where(same, (1.0 - x) * own[before] + x * own[step], own[step])
         return dataclasses.replace(motion, F=F.T.copy()), stored, power
 
 
