@@ -9,7 +9,6 @@ import numpy as np
 
 from fricmb._simulate._joined import runs_of
 from fricmb.integrate.constrained.step_trajectory import StepTrajectory
-from fricmb.integrate.output.row_trajectory import RowTrajectory
 from fricmb.integrate.problem import EVENT_STICK, LAW_SMOOTH, SLIP, STICK, Floats, Ints, Problem
 from fricmb.integrate.run.chunked_run import KeptTrajectory
 from fricmb.integrate.trajectory import Trajectory
@@ -30,7 +29,7 @@ def miss_notes(sol: Solution, trajectory: Trajectory, rtol: float | None) -> tup
     runs = runs_of(trajectory)
     notes = [note for run in runs for note in _passes(run, near)]
     # steps that are controlled by their error see the jump
-    seen = rtol is not None and all(isinstance(run, (RowTrajectory, StepTrajectory)) for run in runs)
+    seen = rtol is not None and all(isinstance(run, StepTrajectory) for run in runs)
     if not seen and not any(isinstance(run, KeptTrajectory) for run in runs):
         notes += _through_zero(sol, trajectory, near)
     return tuple(notes)

@@ -47,4 +47,24 @@ class Guard(Integrator):
 
 @dataclass(frozen=True, kw_only=True)
 class Guarded(Guard, Collocation):
-    """Collocation; in reserve the general method."""
+    """Collocation; in reserve the general method, which also does what exact steps would creep through."""
+
+    def integrate(
+        self,
+        problem: Problem,
+        start: Start,
+        t_end: float,
+        *,
+        tolerance: Tolerance,
+        step: float | None = None,
+        t_eval: Floats | None = None,
+        progress: Callable[[float], None] | None = None,
+        memory: float | None = None,
+    ) -> Trajectory:
+        """See :class:`Integrator`."""
+        options: dict[str, Any] = {"tolerance": tolerance, "t_eval": t_eval, "progress": progress, "memory": memory}
+        if not self.creeps(problem, t_end - start.t, tolerance.rtol):
+            return super().integrate(problem, start, t_end, **options)
+        run = self.reserve().integrate(problem, start, t_end, **options)
+        run.instead = ("radau", "damped parts far faster than all that rings: exact steps would follow them")
+        return run

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from fricmb.integrate.collocation.suits import against, takes_few_on_modes, takes_one_contact
+from fricmb.integrate.collocation.suits import against, takes_one_contact
 from fricmb.integrate.guard import Guarded
 from fricmb.integrate.integrator import Integrator
 from fricmb.integrate.methods.free_vibration import Exact
@@ -31,9 +31,8 @@ def _choose(problem: Problem, rtol: float) -> tuple[Integrator, str]:
     exact = Exact()
     if exact.refuses(problem) is None:
         return exact, "free vibration of a linear structure: closed form"
-    for takes, what in ((takes_one_contact, "one contact"), (takes_few_on_modes, "few contacts on modes")):
-        if takes(problem) and Guarded().refuses(problem) is None and against(problem, rtol) is None:
-            return Guarded(), f"linear structure with {what} under constant friction: exact between transitions"
+    if takes_one_contact(problem) and Guarded().refuses(problem) is None and against(problem, rtol) is None:
+        return Guarded(), "linear structure with one contact under constant friction: exact between transitions"
     reason = against_taylor(problem) or _bends_often(problem) or _holds_taylor(problem)
     if reason is None:
         # slow to load

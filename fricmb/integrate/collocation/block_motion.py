@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.problem import Floats, Floats2
 
 
 @kernel
@@ -78,67 +76,5 @@ def fundamental(w2: float, d: float, t: float) -> tuple[float, float, float]:
     return t * S, t * t * IS, t * t * t * (_phi2(x1) - _phi2(x2)) / gap
 
 
-@kernel
-def between_nodes(monomial: Floats2, values: Any, theta: float) -> float:
-    """Value at the part theta of a step of the polynomial through ``values`` (s,) at the nodes."""
-    n_s = monomial.shape[0]
-    result = 0.0
-    for r in range(n_s - 1, -1, -1):
-        c = 0.0
-        for x in range(n_s):
-            c += monomial[r, x] * values[x]
-        result = result * theta + c
-    return result
-
-
 #: Most terms of a series.
 MOST = 200
-
-
-@kernel
-def terms_under_polynomials(
-    w2: float, d: float, v0: float, a0: float, slope: float, h: float, tau: float, P0: Floats, P1: Floats, u: Floats,
-    v: Floats,
-) -> int:  # fmt: skip
-    """Terms at tau of the Taylor series of u and v: u' = v + P0, v' = -w2 u - d v + P1 + slope t; returns how many.
-
-    ``v0``, ``a0``: v and v' at the start without the polynomials, whose coefficients are in tau/h.  Term q is of the
-    order q + 1; ``u``, ``v`` have terms for MOST + 1.
-    """
-    s = P0.shape[0]
-    power = 1.0
-    size = max(math.sqrt(abs(w2)), abs(d)) * tau
-    bound = 1.0
-    before_u, before_v = 0.0, 0.0
-    q = 0
-    while (q < s + 2 or bound > 1e-18) and q <= MOST:
-        rate_u = before_v
-        rate_v = -w2 * before_u - d * before_v
-        if q == 0:
-            rate_u = v0
-            rate_v = a0
-        elif q == 1:
-            rate_v += slope * tau
-        if q < s:
-            rate_u += P0[q] * power
-            rate_v += P1[q] * power
-        u[q] = before_u = tau * rate_u / (q + 1)
-        v[q] = before_v = tau * rate_v / (q + 1)
-        q += 1
-        power *= tau / h
-        bound *= size / q
-    return q
-
-
-@kernel
-def under_polynomials(
-    w2: float, d: float, v0: float, a0: float, slope: float, h: float, tau: float, P0: Floats, P1: Floats,
-    terms: Floats2,
-) -> tuple[float, float]:
-    """Gains of u and v at tau, by :func:`terms_under_polynomials`; ``terms`` (2, MOST + 1)."""
-    count = terms_under_polynomials(w2, d, v0, a0, slope, h, tau, P0, P1, terms[0], terms[1])
-    du, dv = 0.0, 0.0
-    for q in range(count):
-        du += terms[0, q]
-        dv += terms[1, q]
-    return du, dv

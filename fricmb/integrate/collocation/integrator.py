@@ -1,4 +1,4 @@
-"""The integrator: chooses nodes and kernel, keeps what it prepares, turns a run into a trajectory."""
+"""The integrator: chooses nodes, keeps what it prepares, turns a run into a trajectory."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from typing import ClassVar
 import numpy as np
 
 from fricmb.errors import SceneError
-from fricmb.integrate.collocation.exact_room import free_blocks
 from fricmb.integrate.collocation.nodes import Z_EXACT
 from fricmb.integrate.collocation.one_contact.constants import structure
 from fricmb.integrate.collocation.one_contact.prepare import (
@@ -33,12 +32,9 @@ from fricmb.integrate.collocation.one_contact.run import (
 )  # fmt: skip
 from fricmb.integrate.collocation.one_contact.trajectory import SingleRun
 from fricmb.integrate.collocation.one_contact.workspace import borrowed, goes_back, lengthened, may_grow, within
-from fricmb.integrate.collocation.run import run_general
 from fricmb.integrate.collocation.structure_blocks import NoBlocks
 from fricmb.integrate.integrator import Integrator, Tolerance
-from fricmb.integrate.model.problem_structs import softness
-from fricmb.integrate.once_per import once_per
-from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, SLIP, STICK, Floats, Problem, Start
+from fricmb.integrate.problem import SLIP, STICK, Floats, Problem, Start
 from fricmb.integrate.run.chunks import counters
 from fricmb.integrate.run.stop import ended, in_slices
 from fricmb.integrate.trajectory import Trajectory, Transitions
@@ -52,33 +48,24 @@ _FAILURES = {
 
 @dataclass(frozen=True, kw_only=True)
 class Collocation(Integrator):
-    """Radau IIA collocation of the contact forces alone; the linear structure between is exact.
+    """Radau IIA collocation of the force of one contact alone; the linear structure between transitions is exact.
+
+    For one contact under constant friction, in one direction or in the plane, and loads that are linear in time.
 
     Attributes
     ----------
     nodes : int or None
         Number of nodes, 4 to 9; None: from the tolerance.
     safety : float
-        Tolerance of a step per ``rtol``: errors of single steps come out far smaller at the end of a run.  A thirtieth
-        of it where friction depends on the slip speed, 1 for laws that are regularised, have states or come by table,
-        where they do not.
-    general : bool
-        Whether one contact under constant friction and loads, too, is run as any other scene is; it has a faster way
-        of its own.
-    exact_up_to : float or None
-        Largest frequency times step of modes whose motion is exact, beyond it they take Radau IIA's answer; None: as
-        far as stick is stable.  With 0 the structure, too, is plain Radau IIA (to see what exactness is worth); only
-        where ``general``.
+        Tolerance of a step per ``rtol``: errors of single steps come out far smaller at the end of a run.
     """
 
     nodes: int | None = None
     safety: float = 300.0
-    general: bool = False
-    exact_up_to: float | None = None
 
     name: ClassVar[str] = "collocation"
     order: ClassVar[str] = "7 to 17"
-    takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports", "nonlinear"})
+    takes: ClassVar[frozenset[str]] = frozenset({"linear", "ports"})
     pauses: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
@@ -87,26 +74,26 @@ class Collocation(Integrator):
             raise SceneError(f"collocation: nodes={self.nodes!r}; expected a number from 4 to 9, or None")
         if not 0.0 < self.safety < math.inf:
             raise SceneError(f"collocation: safety={self.safety!r}; expected a positive number")
-        if self.exact_up_to is not None and not 0.0 <= self.exact_up_to <= Z_EXACT[9]:
-            raise SceneError(f"collocation: exact_up_to={self.exact_up_to!r}; expected 0 to {Z_EXACT[9]:g}, or None")
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""
         against = super().refuses(problem)
         if against is not None:
             return against
-        if problem.bends.table.address.size:
-            return "collocation follows forces by polynomials; here some bend with the motion (Max, Abs, Piecewise)"
-        if softness(problem) > 0.0:
-            return "collocation needs contacts whose forces in stick are determined; here some are redundant"
+        if not is_single(problem):
+            return (
+                "collocation takes one contact under constant friction, a constant normal force and loads that are"
+                " linear in time; 'radau', 'bdf' and 'auto' take any scene"
+            )
         try:
-            if is_single(problem):
-                structure(problem)
-            else:
-                free_blocks(problem)
+            structure(problem)
         except NoBlocks as error:
             return f"collocation needs the structure in blocks; here {error}"
         return None
+
+    def creeps(self, problem: Problem, span: float, rtol: float) -> bool:
+        """Whether damped parts force thousands of steps over a span that nothing else asks for."""
+        return is_stiff(problem, nodes_for(rtol) if self.nodes is None else self.nodes, span)
 
     def integrate(
         self,
@@ -122,36 +109,10 @@ class Collocation(Integrator):
     ) -> Trajectory:
         """Run from ``start`` to ``t_end`` (see :class:`Integrator`)."""
         s = nodes_for(tolerance.rtol) if self.nodes is None else self.nodes
-        span = t_end - start.t
         # where tolerances are loose a step may still not err by more than 0.5 %
-        safety = min(_trust(problem, self.safety), 0.005 / tolerance.rtol)
-        if self.general or not is_single(problem) or is_stiff(problem, s, span):
-            return run_general(problem, start, t_end, tolerance, s, safety, self.exact_up_to, progress, memory)
-        return _run_single(problem, start, t_end, tolerance, s, safety, progress, memory)
-
-
-#: Part of ``safety`` where friction depends on slip speed: on masses tied by stiff springs, in the plane and on the
-#: brake errors at 1e-6 came down from 1 to 800 rtol to 0.01 to 3, for a tenth to a half more time.
-BY_SPEED = 1.0 / 30.0
-
-
-def _trust(problem: Problem, safety: float) -> float:
-    """How many times ``rtol`` the last coefficient of a step may be: ends of steps are better than their polynomials.
-
-    Where forces are as smooth as polynomials, ``safety``.  Where friction follows the slip speed, and that what
-    vibrates beside, steps hold a whole period of it and their ends gain little: two masses tied by k = 1e4 erred by
-    5000 rtol.
-    Laws that are steep (regularised), or have kinks or states of their own, give what the polynomial gives.
-    """
-    contacts = problem.contacts
-
-    def part() -> float:
-        if problem.n_z or np.any(contacts.law == LAW_SMOOTH) or np.any(contacts.piecewise):
-            return 0.0
-        return BY_SPEED if np.any(contacts.law != LAW_CONSTANT) else 1.0
-
-    trusted = once_per(contacts, "trust", part)
-    return safety * trusted if trusted else 1.0
+        safety = min(self.safety, 0.005 / tolerance.rtol)
+        with borrowed(problem, s) as held:
+            return _run_in(held, problem, start, t_end, tolerance, s, safety, progress, memory)
 
 
 def nodes_for(rtol: float) -> int:
@@ -182,14 +143,6 @@ def _set_state(run: Run, start: Start, tolerance: Tolerance) -> None:
         run.mode, run.g[:], run.n[:] = SLIP, g, g / speed
     elif start.mode is not None and start.mode[0] == SLIP and start.direction is not None:
         run.mode, run.n[:] = SLIP, start.direction
-
-
-def _run_single(
-    problem: Problem, start: Start, t_end: float, tolerance: Tolerance, s: int, safety: float,
-    progress: Callable[[float], None] | None, memory: float | None = None,
-) -> Trajectory:  # fmt: skip
-    with borrowed(problem, s) as held:
-        return _run_in(held, problem, start, t_end, tolerance, s, safety, progress, memory)
 
 
 def _run_in(

@@ -1,4 +1,4 @@
-"""Where collocation of the port forces is the fastest way to a tolerance, and where another integrator is better."""
+"""Where collocation of one contact's force is the fastest way to a tolerance, and where it does not get there."""
 
 from __future__ import annotations
 
@@ -6,20 +6,17 @@ import math
 
 import numpy as np
 
-from fricmb.integrate.collocation.exact_room import free_blocks
+from fricmb.integrate.collocation.free_blocks import free_blocks
 from fricmb.integrate.collocation.one_contact.prepare import is_single
-from fricmb.integrate.model.problem_structs import packed_of
+from fricmb.integrate.model.structure import half_bandwidth
 from fricmb.integrate.once_per import once_per
-from fricmb.integrate.problem import LAW_CONSTANT, Problem
+from fricmb.integrate.problem import Problem
 
 #: Degrees of freedom up to which one contact under constant friction has kernels of its own, which keep some twenty
 #: matrices of that size, and up to which if the structure is a narrow band.  In all, with what is made ready before: a
 #: bar of 200, 400 and 1000 modes 0.1, 0.5 and 4 s, by Taylor steps 0.9, 3 s and over a minute; a dense structure of
 #: 200 degrees of freedom 0.2 s and 8 s; 200 masses in a row 0.06 and 0.04 s.
 FULL_MATRICES, BAND = 1600, 100
-#: Port rows up to which a body given by modes is left to exact structure, and modes from which on also where its
-#: contacts slip in one direction: 3 to 8 contacts in the plane took ``radau`` 3 to 4.5 times as long.
-MOST_ROWS, MANY = 16, 30
 
 #: Ratio of squared frequencies above which an eigenproblem leaves too few digits of the slow ones, and from which what
 #: is left of them is round-off of zero.
@@ -61,28 +58,11 @@ def hides_springs(problem: Problem) -> bool:
     return found
 
 
-def port_rows(problem: Problem) -> int:
-    """Unknown port forces of a node: friction, varying normal forces, local forces of elements."""
-    return problem.m + problem.n_v + int(problem.elements.f_start[-1])
-
-
 def takes_one_contact(problem: Problem) -> bool:
     """Whether the kernels for one contact under constant friction are the fastest there are."""
     if not is_single(problem):
         return False
-    return problem.n <= (FULL_MATRICES if packed_of(problem).structure.half <= 0 else BAND)
-
-
-def takes_few_on_modes(problem: Problem) -> bool:
-    """Whether several contacts under constant friction rub on bodies whose modes nothing else couples."""
-    contacts, rows = problem.contacts, port_rows(problem)
-    if not (problem.n_c > 1 and rows == problem.m <= MOST_ROWS and problem.n <= FULL_MATRICES):
-        return False
-    if (contacts.law != LAW_CONSTANT).any() or (problem.n < MANY and rows == problem.n_c):
-        return False
-    inside = slice(0, problem.n), slice(0, problem.n)
-    parts = [problem.linear.csr(name) for name in ("M", "Kx", "Cx")]
-    return problem.n > rows and all(part.block(*inside).is_diagonal() for part in parts)
+    return problem.n <= (FULL_MATRICES if half_bandwidth(problem) <= 0 else BAND)
 
 
 def against(problem: Problem, rtol: float) -> str | None:

@@ -11,7 +11,7 @@ from fricmb.integrate.compile.room import room
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.stages import Stages, linearise, stages_of
-from fricmb.integrate.constrained.state import State, state_of
+from fricmb.integrate.constrained.state import State, set_out, state_of
 from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.methods.backward_differences import Differences, begin_at
 from fricmb.integrate.methods.bdf_stability import (
@@ -22,7 +22,6 @@ from fricmb.integrate.methods.bdf_stability import (
     spectrum,
     spectrum_within,
 )
-from fricmb.integrate.model.state import set_out
 from fricmb.integrate.problem import Floats, Floats2, Problem, Start
 from fricmb.integrate.step.tableau import one_stage
 

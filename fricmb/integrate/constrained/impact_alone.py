@@ -23,10 +23,10 @@ from fricmb.integrate.constrained.radau_step import Control
 from fricmb.integrate.constrained.recorder import Record, copy_state
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.watch import Watch
-from fricmb.integrate.contact.transition import record_changes
 from fricmb.integrate.mechanism import APART, RIGID, Mechanism
 from fricmb.integrate.problem import NORMAL_REACTION, Codes, Floats, Floats2, Ints, Problem
 from fricmb.integrate.run.breakpoints import EPS
+from fricmb.integrate.run.mode_changes import record_changes
 from fricmb.integrate.run.outcomes import DONE
 
 #: Unknowns up to which matrices are solved here.

@@ -20,10 +20,10 @@ from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.transition import bears, bring_to_rest, let_go, turn_with_slip
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
-from fricmb.integrate.contact.transition import record_changes
 from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.problem import SLIP, STICK, Codes
 from fricmb.integrate.run.breakpoints import set_window
+from fricmb.integrate.run.mode_changes import record_changes
 from fricmb.integrate.run.outcomes import DONE, FAIL_MARGIN, FAIL_MODES, FAIL_PROJECT, FAIL_SEVERAL, FAIL_SINGULAR
 
 #: Slip velocity that is round-off, beside the largest.

@@ -20,7 +20,7 @@ from fricmb.integrate.constrained.least_change import names_of_rows
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech, masses, mech_of
 from fricmb.integrate.constrained.recorder import Record, record_of, width
-from fricmb.integrate.constrained.state import State
+from fricmb.integrate.constrained.state import State, set_out
 from fricmb.integrate.constrained.step_trajectory import StepTrajectory, complete_at
 from fricmb.integrate.constrained.structure import mechanism_of, with_open
 from fricmb.integrate.constrained.time_loop import begin, drive
@@ -28,17 +28,14 @@ from fricmb.integrate.constrained.workspace import RunWorkspace, run_workspace
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.mechanism import Mechanism
 from fricmb.integrate.methods.backward_differences import Differences, differences, no_differences
-from fricmb.integrate.methods.bdf_stability import BdfGuard
-from fricmb.integrate.model.state import set_out
 from fricmb.integrate.problem import LAW_SMOOTH, Codes, Floats, Problem, Start
 from fricmb.integrate.run.chunks import Chunks, counters, end_of
 from fricmb.integrate.run.outcomes import DONE, FAIL_INFINITE, FAILURES, FULL, SLICE_OVER
 from fricmb.integrate.run.stop import ended
 from fricmb.integrate.signals.largest_value import largest_forces
 from fricmb.integrate.signals.longest_steps import LongestSteps, shortest_of, steps_of_run
-from fricmb.integrate.step.stages import STIFF
-from fricmb.integrate.step.tableau import Tableau
 from fricmb.integrate.step.step_control import FREE, SAMPLED, first_step
+from fricmb.integrate.step.tableau import Tableau
 
 #: Steps that a kernel fills before they are taken out: so many, or so many bytes.
 CHUNK, CHUNK_BYTES = 1024, 1e6
@@ -187,6 +184,8 @@ def _set_up(
     return 1e-12 * slip, FURTHER * float(np.linalg.norm(weight * first))
 
 
+#: Forces of springs and dampers over a step that are stiff, in units of those of inertia.
+STIFF = 1e4
 #: What is no number to go on with: functions of time are asked 1e-300 behind a start at 0, where 1/t is 1e300.
 INFINITE = 1e290
 

@@ -1,4 +1,4 @@
-"""The stages of a step of Radau IIA, or of collocation elsewhere, on the velocity level (index 2): simplified Newton on the transformed system.
+"""The stages of a one-step formula on the velocity level (index 2): simplified Newton on the transformed system.
 
 With velocities V_i, multipliers L_i and friction forces F_i at the stages, Q_i = q + h sum_j A_ij V_j:
 
@@ -49,7 +49,8 @@ class Series(Layout):
 
     ``bent`` 1 where signals are no straight lines.  ``x`` (., n) of positions, ``path`` (., r) of rows (see
     ``dense_rows``), ``N``, ``F``, ``g`` of loads, friction and slip velocities, in a plane ``speed`` and ``unit`` of
-    their sizes and directions; ``u`` (s+1, 2 n_u) of signals and their rates, by values ``signal`` at 0, c.  ``along`` (n_c,) modes as numbers, ``mu`` coefficients; ``held`` what sticks;
+    their sizes and directions; ``u`` (s+1, 2 n_u) of signals and their rates, by values ``signal`` at 0, c.
+    ``along`` (n_c,) modes as numbers, ``mu`` coefficients; ``held`` what sticks;
     ``force`` (r,) along rows; ``f``, ``acc`` (n,) space.
     """
 

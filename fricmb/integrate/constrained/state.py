@@ -10,7 +10,7 @@ from fricmb.integrate.constrained.dense_rows import has_dense_rows
 from fricmb.integrate.constrained.jacobian_layers import Layers
 from fricmb.integrate.constrained.problem_structs import mech_of
 from fricmb.integrate.constrained.structure import mechanism_of
-from fricmb.integrate.problem import Codes, Floats, Floats2, Ints, Pivots, Problem
+from fricmb.integrate.problem import Codes, Floats, Floats2, Ints, Pivots, Problem, Start
 
 
 class State(Layout):
@@ -45,6 +45,15 @@ def state_of(problem: Problem) -> State:
         np.zeros(nc), np.zeros(rows), np.zeros(rows), np.zeros(nz), np.ones(nc, np.int8), np.zeros(rows),
         np.zeros(nc + 2), np.zeros(nc + 2),
     )  # fmt: skip
+
+
+def set_out(y: State, start: Start) -> None:
+    """Bring an empty state to a start; forces and modes are still to be found."""
+    y.t, y.q[:], y.v[:], y.z[:] = start.t, start.q, start.v, start.z
+    if start.mode is not None:
+        y.mode[:] = start.mode
+    if start.direction is not None:
+        y.n[:] = start.direction
 
 
 class Held(Layout):

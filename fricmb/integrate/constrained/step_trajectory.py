@@ -9,13 +9,12 @@ import numpy as np
 
 from fricmb.integrate.constrained.instants import instants
 from fricmb.integrate.constrained.problem_structs import masses, mech_of
+from fricmb.integrate.constrained.step_energies import integrate_between, integrate_powers, scale_of
 from fricmb.integrate.constrained.structure import mechanism_of, with_open
 from fricmb.integrate.constrained.workspace import evaluation
 from fricmb.integrate.model.damped_normals import damped_normals
-from fricmb.integrate.output.step_energies import integrate_between, integrate_powers, scale_of
 from fricmb.integrate.problem import LAW_SMOOTH, Codes, Floats, Ints, Problem, Start
 from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
-
 
 #: Part of a step just before its end, and of the slip speed there below which slip has ended.
 LITTLE, ENDED = 0.999, 1e-4

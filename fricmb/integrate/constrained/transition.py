@@ -21,10 +21,10 @@ from fricmb.integrate.constrained.slip_rows import lack, plane
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
-from fricmb.integrate.contact.transition import record_changes
 from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes
 from fricmb.integrate.run.breakpoints import set_window
+from fricmb.integrate.run.mode_changes import record_changes
 from fricmb.integrate.run.outcomes import (
     DONE,
     FAIL_HIT,

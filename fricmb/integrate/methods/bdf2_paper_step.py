@@ -23,10 +23,10 @@ from fricmb.integrate.constrained.stage_newton import iterate_stages
 from fricmb.integrate.constrained.stages import Stages, bring_up_to_date, factor_stages, linearise
 from fricmb.integrate.constrained.state import Instant, State, state_of
 from fricmb.integrate.constrained.watch import Watch
-from fricmb.integrate.contact.transition import record_changes
 from fricmb.integrate.model.friction_cone import cone_margin
 from fricmb.integrate.model.law_values import point_along
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, SLIP, STICK, Codes, Floats, Problem
+from fricmb.integrate.run.mode_changes import record_changes
 from fricmb.integrate.run.outcomes import DONE, FAIL_MODES, FAIL_STEP, FULL, SLICE_OVER
 from fricmb.integrate.run.slices import slice_over, ticks
 

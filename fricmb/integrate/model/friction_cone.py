@@ -75,16 +75,3 @@ def cone_margin(ports: Laws, laws: Table, k: int, s: Scratch, F: Floats, N: floa
     """How far the force of a contact is from its friction cone, mu_s N - |F|; below 0 it cannot stick."""
     limit = stick_limit(ports, laws, k, s, N)
     return float(limit - held_size(ports, k, F, limit))
-
-
-@kernel
-def squared_margin(ports: Laws, k: int, F: Floats, limit: float) -> float:
-    """The same by squares, (mu_s N)^2 - |F|^2: a polynomial where F and N are."""
-    return float(limit * limit - held_size(ports, k, F, limit) ** 2)
-
-
-@kernel
-def load_factor(ports: Laws, k: int, F: Floats, limit: float) -> float:
-    """|F| over its limit, above 1 beyond the cone; 2 for any force where there is nothing to hold it."""
-    size = held_size(ports, k, F, limit)
-    return float(size / limit if limit > 0.0 else (2.0 if size > 0.0 else 0.0))

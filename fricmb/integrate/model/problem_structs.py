@@ -6,18 +6,12 @@ import numpy as np
 
 from fricmb.integrate.array_cache import cached_by_content
 from fricmb.integrate.compile.layout import Layout
-from fricmb.integrate.compile.room import room
 from fricmb.integrate.csr import is_diagonal
-from fricmb.integrate.model.damped_normals import damped_normals
-from fricmb.integrate.model.structure import Structure, dense_inverse, inverse_mass, pack_structure
+from fricmb.integrate.model.structure import dense_inverse, inverse_mass
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import (
-    NORMAL_CONSTANT,
-    NORMAL_LAW,
-    Codes,
     Contacts,
     Floats,
-    Floats2,
     Ints,
     Problem,
     SparseLinear,
@@ -38,35 +32,6 @@ class Table(Layout):
     form_constant: Floats
 
 
-class Ports(Layout):
-    """Contacts.
-
-    ``var`` (n_c,) numbers those with a varying normal force, -1 for the others; ``acts``: both bodies feel it;
-    ``damped``: it depends on a rate; D = W^T M^-1 W; ``knot_start``, ``knots``: see ``Contacts``;
-    ``soft`` relative softening of stuck contacts whose forces would not be determined.
-    """
-
-    row: Ints
-    W: Floats2
-    w: Floats
-    Wu: Floats2
-    D: Floats2
-    law: Codes
-    mu_s: Floats
-    mu_0: Floats
-    lean: Floats
-    knot_start: Ints
-    knots: Floats
-    z_start: Ints
-    N: Floats
-    Wn: Floats2
-    N0: Floats
-    var: Ints
-    acts: Codes
-    damped: Codes
-    soft: float
-
-
 class Spread(Layout):
     """Where the local forces of nonlinear elements act."""
 
@@ -74,21 +39,6 @@ class Spread(Layout):
     start: Ints
     dof: Ints
     coefficient: Floats
-
-
-class Packed(Layout):
-    """All of a problem; ``bends``, ``bend_start``: see ``Bends``."""
-
-    structure: Structure
-    ports: Ports
-    signals: Table
-    laws: Table
-    normals: Table
-    elements: Table
-    spread: Spread
-    breakpoints: Floats
-    bends: Table
-    bend_start: Ints
 
 
 @cached_by_content
@@ -162,32 +112,3 @@ def spread_of(problem: Problem) -> Spread:
     return Spread(
         elements.f_start, elements.spread_start, elements.spread_dof, np.append(elements.spread_coefficient, 0.0)
     )
-
-
-def packed_of(problem: Problem) -> Packed:
-    """The problem as the kernels take it, made once per problem object."""
-    return once_per(problem, "packed", lambda: _pack(problem))
-
-
-def _pack(problem: Problem) -> Packed:
-    contacts = problem.contacts
-    solid = np.ascontiguousarray
-    structure = pack_structure(problem)
-    varies = contacts.normal != NORMAL_CONSTANT
-    var = np.where(varies, np.cumsum(varies) - 1, -1).astype(np.int64)
-    W = solid(contacts.W)
-    ports = Ports(
-        solid(contacts.row, np.int64), W, solid(contacts.w), solid(contacts.Wu),
-        mobility_at_contacts(problem),
-        solid(contacts.law, np.int8), solid(contacts.mu_s), solid(contacts.mu_0),
-        leans(contacts),
-        knot_starts(contacts), solid(contacts.knots), solid(contacts.z_start, np.int64),
-        np.where(varies, 0.0, contacts.N), solid(contacts.Wn), solid(contacts.N0), var,
-        (contacts.normal == NORMAL_LAW).astype(np.int8), damped_normals(problem), softness(problem),
-    )  # fmt: skip
-    return room(Packed(
-        structure, ports, table_of(problem.signals.table), table_of(contacts.law_table),
-        table_of(contacts.normal_table), table_of(problem.elements.table), spread_of(problem),
-        np.sort(np.asarray(problem.signals.breakpoints, float)), table_of(problem.bends.table),
-        np.ascontiguousarray(problem.bends.start, np.int64),
-    ))  # fmt: skip

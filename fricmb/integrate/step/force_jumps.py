@@ -10,11 +10,9 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
-from fricmb.integrate.model.forces import Scratch, gather, set_instant
-from fricmb.integrate.model.problem_structs import Packed, Spread, Table
-from fricmb.integrate.model.state import State
+from fricmb.integrate.model.forces import Scratch, gather
+from fricmb.integrate.model.problem_structs import Spread, Table
 from fricmb.integrate.problem import Floats, Floats2
-from fricmb.integrate.step.one_step_room import Accuracy
 
 #: Halvings of the way from the start to the end of a step, each time towards the larger change of the force.
 HALVINGS = 10
@@ -103,27 +101,3 @@ def find_jump(elements: Table, spread: Spread, s: Scratch, k: int, ends: Floats2
             at = n_f + b * n_x + a
             jump[b] -= 0.5 * (f[0, at] + f[1, at]) * (x[1, a] - x[0, a])
     return True
-
-
-@kernel
-def jump_error(packed: Packed, s: Scratch, y: State, t: float, q: Floats, v: Floats, acc: Accuracy, h: float) -> float:
-    """What jumps of elements' forces between y and a step's end (t, q, v) leave of velocities, over tolerance."""
-    elements, spread = packed.elements, packed.spread
-    worst = 0.0
-    n_e = elements.address.shape[0]
-    if n_e == 0:
-        return 0.0
-    ends, jump = np.zeros((2, elements.x_start[n_e])), np.zeros(spread.start.shape[0])
-    set_instant(packed.signals, s, y.t, y.q, y.v)
-    put_arguments(elements, s, ends[0])
-    set_instant(packed.signals, s, t, q, v)
-    put_arguments(elements, s, ends[1])
-    for k in range(n_e):
-        if not find_jump(elements, spread, s, k, ends, jump):
-            continue
-        for b in range(spread.f_start[k], spread.f_start[k + 1]):
-            for j in range(spread.start[b], spread.start[b + 1]):
-                i = spread.dof[j]
-                push = abs(spread.coefficient[j] * jump[b - spread.f_start[k]]) * packed.structure.mobility[i]
-                worst = max(worst, h * push / max(acc.v[i], abs(y.v[i]), acc.floor_v[i], 1e-290))
-    return float(worst / acc.rtol)

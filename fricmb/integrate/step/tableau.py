@@ -21,7 +21,6 @@ from fricmb.integrate.problem import Complexes, Complexes2, Floats, Floats2
 class Tableau(Layout):
     """c, b (s,), A (s, s); lam (l,), T (s, l), Tinv (l, s): real ones, then one of each conjugate pair (T doubled).
 
-
     ``top`` (2, s+1): the last and the last but one Legendre coefficient of the polynomial through the values at 0, c.
     ``mid`` (s, s+1): its values half-way between neighbours of 0, c.  ``rate`` (s, s+1): its derivatives at c.
     ``basis`` (s+1, s+1): monomial coefficients of the same polynomial, row k for x^k.

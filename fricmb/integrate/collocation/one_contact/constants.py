@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fricmb.integrate.collocation.exact_room import free_blocks
+from fricmb.integrate.collocation.free_blocks import free_blocks
 from fricmb.integrate.collocation.one_contact.room import Run
 from fricmb.integrate.collocation.one_contact.signals import linear_signals
 from fricmb.integrate.collocation.structure_blocks import Blocks, blocks

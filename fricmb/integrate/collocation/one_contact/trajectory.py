@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.collocation.exact_room import has_ledger
+from fricmb.integrate.collocation.free_blocks import has_ledger
 from fricmb.integrate.collocation.one_contact.constants import linear_part, stick_forces, structure
 from fricmb.integrate.collocation.one_contact.held import HeldLedger
 from fricmb.integrate.collocation.one_contact.held_samples import held_states

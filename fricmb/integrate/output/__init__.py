@@ -1,1 +1,0 @@
-"""Rows that a run leaves, and motion between them."""
