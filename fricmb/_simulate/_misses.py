@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fricmb._simulate._joined import runs_of
-from fricmb.integrate.constrained.step_trajectory import StepTrajectory
+from fricmb.integrate.implicit.output.step_trajectory import StepTrajectory
 from fricmb.integrate.problem import EVENT_STICK, LAW_SMOOTH, SLIP, STICK, Floats, Ints, Problem
 from fricmb.integrate.run.chunked_run import KeptTrajectory
 from fricmb.integrate.trajectory import Trajectory

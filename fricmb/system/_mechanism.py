@@ -10,7 +10,7 @@ import numpy as np
 
 from fricmb.equations import place_template
 from fricmb.errors import SceneError
-from fricmb.integrate.constrained.consistent_start import assembled
+from fricmb.integrate.implicit.equations.consistent_start import assembled
 from fricmb.integrate.mechanism import Entries, Mechanism, Places
 from fricmb.integrate.problem import Floats, Linear, Problem, Signals, Start
 from fricmb.plan import common
@@ -148,7 +148,7 @@ def _check_places(problem: Problem, scene: Any, start: Start) -> None:
 
 def without_redundant(problem: Problem, scene: Any, start: Start) -> Problem:
     """The problem with constraints marked that follow from others; friction needs reactions that are determined."""
-    from fricmb.integrate.constrained.redundancy import redundancy
+    from fricmb.integrate.implicit.equations.redundancy import redundancy
 
     mechanism = problem.mechanism
     names = () if mechanism is None else mechanism.joints.names

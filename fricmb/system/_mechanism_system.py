@@ -68,8 +68,8 @@ class MechanismSystem(System):
 
         What only pushes and may let go takes none away.
         """
-        from fricmb.integrate.constrained.least_change import constraints_at, dense
-        from fricmb.integrate.constrained.redundancy import RANK
+        from fricmb.integrate.implicit.equations.least_change import constraints_at, dense
+        from fricmb.integrate.implicit.equations.redundancy import RANK
 
         joints = self.mechanism.joints
         stays = np.repeat(joints.hands_over == 0, np.diff(joints.row))
@@ -93,8 +93,8 @@ class MechanismSystem(System):
 
     def reactions(self, samples: MotionSamples) -> dict[str, Floats]:
         """The same of every joint by name, and of the inner constraints of bodies by theirs."""
-        from fricmb.integrate.constrained.consistent_start import away
-        from fricmb.integrate.constrained.step_trajectory import complete_open
+        from fricmb.integrate.implicit.equations.consistent_start import away
+        from fricmb.integrate.implicit.output.step_trajectory import complete_open
 
         joints, rows = self.mechanism.joints, self.problem.m
         count, m = samples.t.size, self.mechanism.n_rows
@@ -149,8 +149,8 @@ class MechanismSystem(System):
         """Without what redundant constraints may push against one another."""
         if not (self.mechanism.joints.dropped == 1).any():
             return lam
-        from fricmb.integrate.constrained.least_change import constraints_at, dense
-        from fricmb.integrate.constrained.redundancy import RANK
+        from fricmb.integrate.implicit.equations.least_change import constraints_at, dense
+        from fricmb.integrate.implicit.equations.redundancy import RANK
 
         found = np.empty_like(lam)
         for i, t in enumerate(samples.t.tolist()):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fricmb as fm
-from fricmb.integrate.constrained import impact
+from fricmb.integrate.implicit import impact
 
 
 def disc(law):

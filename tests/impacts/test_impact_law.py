@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fricmb as fm
-from fricmb.integrate.constrained.impact_law import Hit, solve_by_poisson
+from fricmb.integrate.implicit.impacts.impact_law import Hit, solve_by_poisson
 
 
 def test_what_is_not_accepted_is_refused_by_name():

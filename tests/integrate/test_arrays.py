@@ -14,6 +14,8 @@ from scipy.integrate import solve_ivp
 
 from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.compile.room import room
+from fricmb.integrate.formulas.step_control import ONE_STEP_RUNGS, ladder
+from fricmb.integrate.formulas.tableau import radau
 from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.methods.blocks_of_run import load_stages
 from fricmb.integrate.methods.run_setup import Collector, set_accuracy
@@ -25,9 +27,7 @@ from fricmb.integrate.problem import SLIP, STICK, Contacts, Elements, Linear, Pr
 from fricmb.integrate.run.workspace import Workspace
 from fricmb.integrate.step.one_step import attempt, finish
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep
-from fricmb.integrate.step.step_control import ONE_STEP_RUNGS, ladder
 from fricmb.integrate.step.step_error import step_error
-from fricmb.integrate.step.tableau import radau
 
 
 @entry

@@ -7,9 +7,9 @@ import pytest
 from numpy.polynomial import Polynomial
 
 from fricmb.integrate.compile.kernel import entry
+from fricmb.integrate.formulas.crossing import crossing_at_stages, first_below, first_crossing
+from fricmb.integrate.formulas.tableau import Tableau, radau
 from fricmb.integrate.problem import Floats
-from fricmb.integrate.step.crossing import crossing_at_stages, first_below, first_crossing
-from fricmb.integrate.step.tableau import Tableau, radau
 
 
 @entry

@@ -5,7 +5,7 @@ import pytest
 import sympy
 
 import fricmb as fm
-from fricmb.integrate.constrained.step_energies import integrate_between, integrate_powers
+from fricmb.integrate.implicit.output.step_energies import integrate_between, integrate_powers
 
 RTOL = 1e-6
 OMEGA, MU, T, SPEED = 3.0, 0.1, 30.0, 100.0

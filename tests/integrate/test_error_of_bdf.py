@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import fricmb as fm
-from fricmb.integrate.constrained import bdf_history
-from fricmb.integrate.methods.bdf_stability import guard_of
+from fricmb.integrate.implicit import bdf_history
+from fricmb.integrate.implicit.bdf.bdf_stability import guard_of
 
 
 def arcs(grid, mu_s, mu_k, belt, x, v):

@@ -146,7 +146,7 @@ def test_a_kernel_that_moved_to_another_module_is_another_one():
 def test_a_run_by_bdf_compiles_nothing_the_second_time():
     program = (
         "import fricmb as fm, sys; fm.simulate(fm.models.belt_oscillator(), t_end=1.0, method='bdf');"
-        "kernels = [m for n, m in sys.modules.items() if n == 'fricmb.integrate.constrained.time_loop'];"
+        "kernels = [m for n, m in sys.modules.items() if n == 'fricmb.integrate.implicit.time_loop'];"
         "print(sum(kernels[0].drive.stats.cache_misses.values()))"
     )
     run = [sys.executable, "-c", program]

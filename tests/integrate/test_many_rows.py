@@ -11,9 +11,9 @@ from scipy.integrate import solve_ivp
 
 import fricmb as fm
 from fricmb.integrate import OneStepMethod
-from fricmb.integrate.constrained.problem_structs import mech_of
+from fricmb.integrate.formulas.tableau import radau
+from fricmb.integrate.implicit.scene.problem_structs import mech_of
 from fricmb.integrate.methods.radau import in_a_band
-from fricmb.integrate.step.tableau import radau
 from fricmb.system import build
 
 

@@ -21,14 +21,14 @@ from fricmb.integrate.compile.band import (
 from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.compile.lapack import load_lapack
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.methods.backward_differences import best_order
+from fricmb.integrate.formulas.step_control import ladder, step_factor
+from fricmb.integrate.formulas.tableau import by_line, largest_in_step, radau
+from fricmb.integrate.implicit.bdf.backward_differences import best_order
 from fricmb.integrate.model.law_values import along, magnitude, point_along
 from fricmb.integrate.problem import Complexes, Complexes2, Floats, Floats2, Ints, Pivots
 from fricmb.integrate.run.breakpoints import next_stop, reached, set_window, set_window_around
 from fricmb.integrate.run.chunks import Chunks
 from fricmb.integrate.run.outcomes import DONE, FULL
-from fricmb.integrate.step.step_control import ladder, step_factor
-from fricmb.integrate.step.tableau import by_line, largest_in_step, radau
 
 
 class Stops(NamedTuple):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import fricmb as fm
-from fricmb.integrate.methods.bdf_stability import COLUMNS, MAX_ORDER, SPACING, backward_polynomial, growth_table
+from fricmb.integrate.implicit.bdf.bdf_stability import COLUMNS, MAX_ORDER, SPACING, backward_polynomial, growth_table
 
 _spec = importlib.util.spec_from_file_location("reference", Path(__file__).parents[1] / "reference.py")
 reference = importlib.util.module_from_spec(_spec)

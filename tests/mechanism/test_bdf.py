@@ -5,7 +5,7 @@ import pytest
 
 import fricmb as fm
 from fricmb.bench._andrews import END, angles
-from fricmb.integrate.constrained import run
+from fricmb.integrate.implicit import run
 
 # Test Set for IVP Solvers (Mazzia, Magherini 2008), problem caraxis, t = 3
 CAR_AXIS = [

@@ -12,7 +12,6 @@ from scipy.interpolate import CubicSpline, make_interp_spline
 from scipy.optimize import brentq
 
 import fricmb as fm
-from fricmb.integrate import constrained
 from fricmb.integrate.methods.radau import Radau
 
 DRY = fm.laws.Coulomb(mu_s=1.0, mu_k=0.8)
@@ -112,8 +111,8 @@ def test_as_a_program_of_its_own_between_the_samples(kind, method):
 
 def test_many_values_on_lines_take_few_stages(monkeypatch):
     """Steps from value to value are so short that three stages do what six do; cubics and other loads keep theirs."""
-    taken, general = [], constrained.stages_for
-    monkeypatch.setattr(constrained, "stages_for", lambda *given: taken.append(general(*given)) or taken[-1])
+    taken, general = [], implicit.stages_for
+    monkeypatch.setattr(implicit, "stages_for", lambda *given: taken.append(general(*given)) or taken[-1])
     t = np.linspace(0.0, 2.5, 2001)
     y = push(t)
     line = lambda s, i: y[i] + (y[i + 1] - y[i]) / (t[i + 1] - t[i]) * (s - t[i])  # noqa: E731

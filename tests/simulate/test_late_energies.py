@@ -11,7 +11,7 @@ import pytest
 import fricmb as fm
 from fricmb import models
 from fricmb.integrate.collocation.one_contact.trajectory import SingleRun
-from fricmb.integrate.constrained import step_trajectory
+from fricmb.integrate.implicit import step_trajectory
 from fricmb.integrate.output.row_trajectory import RowTrajectory
 
 TIMES = np.linspace(0.0, 30.0, 61)

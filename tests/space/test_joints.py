@@ -215,7 +215,7 @@ def test_rotor_on_either_end_of_a_hinge():
 
 def test_a_chain_costs_as_much_a_link_whatever_its_length():
     """Bands: the matrices of a chain keep their width."""
-    from fricmb.integrate.constrained.problem_structs import mech_of
+    from fricmb.integrate.implicit.scene.problem_structs import mech_of
     from fricmb.system import build
 
     def chain(n):

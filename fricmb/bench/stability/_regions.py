@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fricmb.bench._reference import Floats
-from fricmb.integrate.methods.bdf_stability import MAX_ORDER, backward_polynomial
-from fricmb.integrate.step.tableau import radau
+from fricmb.integrate.formulas.tableau import radau
+from fricmb.integrate.implicit.bdf.bdf_stability import MAX_ORDER, backward_polynomial
 
 Complexes = NDArray[np.complex128]
 ComplexFloats = NDArray[np.complexfloating[Any, Any]]

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from fricmb.integrate.compile.lanes import padded
+from fricmb.integrate.formulas.tableau import Tableau, radau
 from fricmb.integrate.problem import Floats, Floats2
-from fricmb.integrate.step.tableau import Tableau, radau
 
 #: Moments kept; enough for w h up to 8 (and the three extra orders of the end weights).
 TERMS = 48

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
+from fricmb.integrate.formulas.tableau import radau
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.methods.radau import against_sharing
 from fricmb.integrate.problem import LAW_SMOOTH, Floats, Problem, Start
-from fricmb.integrate.step.tableau import radau
 from fricmb.integrate.trajectory import Trajectory
 
 
@@ -54,7 +54,7 @@ class Bdf(Integrator):
     ) -> Trajectory:
         """See :class:`Integrator`."""
         # slow to load
-        from fricmb.integrate.constrained import bdf_loop, run_mechanism, stages_for
+        from fricmb.integrate.implicit import bdf_loop, run_mechanism, stages_for
 
         # without joints a steep law turns the force within a step, and with it the power, which no error test of BDF
         # watches: as many steps of Radau are far more accurate there

@@ -15,13 +15,13 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
+from fricmb.integrate.formulas.tableau import one_stage
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import Floats, Problem, Start
-from fricmb.integrate.step.tableau import one_stage
 from fricmb.integrate.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from fricmb.integrate.constrained.run import Setting
+    from fricmb.integrate.implicit.run import Setting
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,8 +53,8 @@ class Bdf2Paper(Integrator):
             Where ``step`` is not given or not positive.
         """
         # slow to load
-        from fricmb.integrate.constrained import run_mechanism
-        from fricmb.integrate.methods.paper_trajectory import PaperTrajectory
+        from fricmb.integrate.implicit import run_mechanism
+        from fricmb.integrate.implicit.paper.paper_trajectory import PaperTrajectory
 
         if step is None or not step > 0.0:
             raise ValueError(f"bdf2-paper needs a step > 0, got {step!r}")
@@ -68,7 +68,7 @@ def _loop(setting: Setting, step: float) -> Callable[[], int]:
     """The loop over steps of a length."""
     # slow to load
     from fricmb.integrate.compile.parallel_compile import load_blocks
-    from fricmb.integrate.methods.bdf2_paper_step import drive_paper, last_of
+    from fricmb.integrate.implicit.paper.paper_step import drive_paper, last_of
 
     load_blocks("solve_with", "find_modes")
     k, w, y, end, before, st, out, control = setting.workspace

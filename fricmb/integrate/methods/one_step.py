@@ -6,9 +6,9 @@ from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from typing import ClassVar
 
+from fricmb.integrate.formulas.tableau import collocated
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import Floats, Problem, Start
-from fricmb.integrate.step.tableau import collocated
 from fricmb.integrate.trajectory import Trajectory
 
 
@@ -58,7 +58,7 @@ class OneStepMethod(Integrator):
     ) -> Trajectory:
         """See :class:`Integrator`."""
         # slow to load
-        from fricmb.integrate.constrained import run_mechanism
+        from fricmb.integrate.implicit import run_mechanism
 
         formula = collocated(tuple(float(c) for c in self.nodes(problem, tolerance.rtol)))
         return run_mechanism(problem, start, t_end, tolerance, formula, progress, memory)

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
+from fricmb.integrate.formulas.tableau import radau
 from fricmb.integrate.methods.one_step import OneStepMethod
 from fricmb.integrate.model.problem_structs import softness
 from fricmb.integrate.problem import Problem
-from fricmb.integrate.step.tableau import radau
 
 
 def against_sharing(problem: Problem) -> str | None:
@@ -20,7 +20,7 @@ def against_sharing(problem: Problem) -> str | None:
         shared = softness(problem) > 0.0
     else:
         # slow to load
-        from fricmb.integrate.constrained.problem_structs import leans_in_a_loop
+        from fricmb.integrate.implicit.scene.problem_structs import leans_in_a_loop
 
         shared = leans_in_a_loop(problem)
     what = "friction whose limit at rest differs by the sense is not shared among contacts that are redundant"
@@ -50,6 +50,6 @@ class Radau(OneStepMethod):
     def nodes(self, problem: Problem, rtol: float) -> Sequence[float]:
         """Right Radau points."""
         # slow to load
-        from fricmb.integrate.constrained import stages_for
+        from fricmb.integrate.implicit import stages_for
 
         return tuple(radau(stages_for(problem, rtol, self.stages)).c.tolist())

@@ -9,19 +9,17 @@ mu_s N| <= mu_s N`` (``held_size``); loops, whose forces are shared, know no lea
 A cone of another shape begins here: with another size (an ellipse whose axes are those of the rows is done without it,
 by ``Elliptic.axis_scale`` and the scale of the rows in ``system/_contacts``), or with a limit that is given the force
 as well, for a law that depends on its direction.  Slip has to follow: its velocity is along the normal of the set of
-forces, which ``step/contact_unknowns`` and ``constrained/friction_rows`` say for a cone, ``constrained/plane_slip`` for
-one of two directions in scenes with joints.
+forces, which ``implicit/equations/friction_rows`` says for one direction and ``plane_slip`` there for several.
 
 Methods for special structures know more, and write the same formula as it serves them:
 
 - ``collocation/one_contact`` (``stick``, ``phase``): one limit for the run, and |F| with its rate and a bound of its
   second derivative, so that no step passes the instant of release;
-- ``step/coulomb_newton`` (general ``collocation``): F = -mu N n with one number for mu N;
 - ``taylor`` (``event_search``, ``turning``, ``landing``, ``starting_modes``): one limit for the run;
 - ``model/friction_discs``: projections on the set, whose radius they are given;
-- ``contact/mode_decision``, ``contact/disc_projection``, ``constrained/mode_decision``: sizes of forces compared
-  with limits of one instant, which do not change while forces are tried;
-- ``contact/event_location.passes_by``: the limit at rest, beside the force that would hold the contact there.
+- ``implicit/stages/series_step``: F = -mu N u by powers of time;
+- ``implicit/modes/mode_decision``: sizes of forces compared with limits of one instant, which do not change while
+  forces are tried.
 """
 
 from __future__ import annotations

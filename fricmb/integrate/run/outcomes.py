@@ -7,14 +7,12 @@ SLICE_OVER, HANDOVER = -2, -1
 #: A step that was accepted or rejected, one that ended with a transition; the run is done, the space for rows is full.
 ACCEPTED, REJECTED, CHANGED, DONE, FULL = range(5)
 #: Why a run cannot go on.
-FAIL_STEP, FAIL_MODES, FAIL_REDUNDANT, FAIL_CHATTER, FAIL_LAW, FAIL_INFINITE = range(5, 11)
-#: The same, of scenes with joints alone (``constrained/failure_text`` puts them into words).
-FAIL_SEVERAL, FAIL_MARGIN, FAIL_SINGULAR, FAIL_LOST, FAIL_PROJECT, FAIL_HIT = range(11, 17)
+FAIL_STEP, FAIL_MODES, FAIL_CHATTER, FAIL_INFINITE = range(5, 9)
+#: The same; ``implicit/output/failure_text`` puts them into words.
+FAIL_SEVERAL, FAIL_MARGIN, FAIL_SINGULAR, FAIL_LOST, FAIL_PROJECT, FAIL_HIT = range(9, 15)
 FAILURES = {
     FAIL_STEP: "the step size fell below round-off: the equations of the step could not be solved to tolerance",
     FAIL_MODES: "no consistent set of stick and slip was found for contacts at rest",
-    FAIL_REDUNDANT: "stuck contacts are redundant: their forces are not determined",
-    FAIL_LAW: "the coefficient of a friction law is negative at the slip speed reached: friction would drive",
     FAIL_INFINITE: "forces or accelerations became infinite",
     FAIL_CHATTER: "transitions pile up at one instant (chattering)",
 }

@@ -1,4 +1,4 @@
-"""Rooms by what is in them: kernels that serve scenes with joints and without name what they read."""
+"""Structs by what is in them: kernels that serve several methods name what they read."""
 
 from __future__ import annotations
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.formulas.crossing import value_at
 from fricmb.integrate.problem import Floats, Floats2
-from fricmb.integrate.step.crossing import value_at
 from fricmb.integrate.taylor.friction_curve import coefficient_at
 from fricmb.integrate.taylor.network import Net
 

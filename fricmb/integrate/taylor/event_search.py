@@ -11,8 +11,8 @@ import math
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.formulas.crossing import evaluate, lowest_between, root_between
 from fricmb.integrate.problem import STICK, Floats
-from fricmb.integrate.step.crossing import evaluate, lowest_between, root_between
 from fricmb.integrate.taylor.layout import LASTS, SHIFTED, WATCH, WORK2, WORK3
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.plane_series import lands

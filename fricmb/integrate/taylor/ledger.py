@@ -6,8 +6,8 @@ At a transition the rest of the step is counted again, for the dofs alone that i
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.formulas.crossing import value_at
 from fricmb.integrate.problem import SLIP, STICK
-from fricmb.integrate.step.crossing import value_at
 from fricmb.integrate.taylor.layout import WORK, WORK2
 from fricmb.integrate.taylor.network import Net
 from fricmb.integrate.taylor.polynomials import horner, horner_rate, polynomial

@@ -6,8 +6,8 @@ import math
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.template import call
+from fricmb.integrate.formulas.crossing import value_at
 from fricmb.integrate.problem import Floats
-from fricmb.integrate.step.crossing import value_at
 from fricmb.integrate.taylor.network import Net
 
 #: What round-off leaves between a prescribed function and its powers of s.

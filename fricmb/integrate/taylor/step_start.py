@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.formulas.step_control import step_factor
 from fricmb.integrate.signals.longest_steps import longest_from
-from fricmb.integrate.step.step_control import step_factor
 from fricmb.integrate.taylor.fresh import all_series, lose_fresh
 from fricmb.integrate.taylor.idle import idle_step
 from fricmb.integrate.taylor.landing import land_all, take_off

@@ -7,10 +7,10 @@ from numba import njit
 
 import fricmb as fm
 from fricmb.equations._inputs import time_inputs
+from fricmb.integrate.formulas.tableau import radau
 from fricmb.integrate.problem import Input
 from fricmb.integrate.signals import longest_steps as module
 from fricmb.integrate.signals.longest_steps import longest_steps
-from fricmb.integrate.step.tableau import radau
 
 T, A = sympy.Symbol("t", real=True), sympy.Symbol("a0", real=True)
 

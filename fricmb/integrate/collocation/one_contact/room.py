@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.formulas.tableau import Tableau
 from fricmb.integrate.problem import Floats, Floats2, Floats3, Floats4, Ints
-from fricmb.integrate.step.tableau import Tableau
 
 Ints2 = Ints
 

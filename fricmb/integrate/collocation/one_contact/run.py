@@ -31,10 +31,10 @@ from fricmb.integrate.collocation.one_contact.step import (
 from fricmb.integrate.collocation.one_contact.stick import AGAIN, NO_END, release_time
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel, run_entry
+from fricmb.integrate.formulas.step_control import ONE_STEP_SAFETY, step_factor
 from fricmb.integrate.problem import EVENT_SLIP, SLIP, STICK
 from fricmb.integrate.run.outcomes import SLICE_OVER
 from fricmb.integrate.run.slices import slice_over, ticks
-from fricmb.integrate.step.step_control import ONE_STEP_SAFETY, step_factor
 
 #: Why a run came back: at its end; no space for rows; for a progress report; or what went wrong.
 DONE, FULL, UNDERFLOW, ENDLESS, NOT_FINITE = range(5)

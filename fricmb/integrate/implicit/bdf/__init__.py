@@ -1,0 +1,1 @@
+"""Steps of BDF: one stage of the same equations, from what the formula keeps of the past."""

@@ -1,0 +1,1 @@
+"""What a step has missed between its stages: laws, loads and elements that bend, jump or turn."""

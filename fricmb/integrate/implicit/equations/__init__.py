@@ -1,0 +1,1 @@
+"""Forces, constraints and friction at an instant: residuals, matrices, accelerations and reactions."""

@@ -1,0 +1,1 @@
+"""Functions that end a mode as they fall below 0, and where in a step they do."""

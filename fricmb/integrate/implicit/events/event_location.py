@@ -1,0 +1,210 @@
+"""Locating transitions, and the end of unique friction, with steps of variable length."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.formulas.crossing import evaluate, first_crossing
+from fricmb.integrate.implicit.equations.forces import is_open
+from fricmb.integrate.implicit.events.event_functions import gaps, grain, port_trigger, triggers, violated
+from fricmb.integrate.implicit.modes.uniqueness import margins
+from fricmb.integrate.implicit.scene.moving import Moving
+from fricmb.integrate.implicit.scene.problem_structs import Mech
+from fricmb.integrate.implicit.scene.state import Instant, State
+from fricmb.integrate.implicit.scene.watch import Watch
+from fricmb.integrate.implicit.stages.radau_step import Control, step_to
+from fricmb.integrate.implicit.stages.stages import Stages
+from fricmb.integrate.run.breakpoints import EPS
+
+#: What is left of a trigger from one step to the next as long as the slope of its polynomial is worth following.
+BETTER = 0.1
+#: Tries of what only the polynomial shows, each by a shorter step.
+DOUBTS = 4
+
+
+@kernel
+def by_polynomial(st: Stages, out: Watch, j: int, h: float) -> tuple[float, float]:
+    """Where the polynomial of trigger j first vanishes in a step h, and its slope there; (-1, 0) where it does not."""
+    for i in range(st.tab.c.shape[0]):
+        out.values[i] = out.inner[i + 1, j]
+    x = first_crossing(st.tab, max(out.inner[0, j], 0.0), out.values, out.series)
+    if x > 1.0:
+        return -1.0, 0.0
+    _, slope, _ = evaluate(out.series, x)
+    return x * h, slope / h
+
+
+@kernel
+def from_touch(st: Stages, out: Watch, j: int, h: float, rate: float) -> float:
+    """Where a distance that is 0 at the start of a step h, and opens at a rate, vanishes again; -1 where it does not.
+
+    By the polynomial of the distance over the time, without the root at the start: hops may be far shorter than steps.
+    At a rate of 0 an acceleration opens it; the slope of the distance itself is round-off there, and may be below 0.
+    """
+    for i in range(st.tab.c.shape[0]):
+        out.values[i] = out.inner[i + 1, j] / st.tab.c[i]
+    x = first_crossing(st.tab, max(rate, 0.0) * h, out.values, out.series)
+    return x * h if 0.0 < x <= 1.0 else -1.0
+
+
+#: Which end of a bracket was moved last; neither yet.
+NEITHER, HIGH, LOW = 0, 1, 2
+
+
+@kernel
+def narrowed(
+    low: float, f_low: float, high: float, f_high: float, side: int, at: float, value: float, beyond: bool
+) -> tuple[float, float, float, float, int]:
+    """A bracket and the values at its ends, one of which is now ``at``; of an end that stays twice, half (Illinois)."""
+    if beyond:
+        return low, 0.5 * f_low if side == HIGH else f_low, at, min(value, 0.0), HIGH
+    return at, value, high, 0.5 * f_high if side == LOW else f_high, LOW
+
+
+@kernel
+def has_series(st: Stages) -> bool:
+    """Whether there is a series of the step."""
+    return bool(st.series.terms > 0)
+
+
+@kernel
+def at_series(mech: Mech, k: Moving, end: State, st: Stages, out: Watch, j: int, h: float) -> float:
+    """Trigger j of a port a time h behind the start of the series; the port's forces and slip go into ``end``."""
+    se, c = st.series, j // 2
+    at, N = h / se.length, 0.0
+    for a in range(mech.port.row[c], mech.port.row[c + 1]):
+        F, g = 0.0, 0.0
+        for i in range(se.terms - 1, -1, -1):
+            F, g = F * at + se.F[i, a], g * at + se.g[i, a]
+        end.F[a], end.g[a] = F, g
+    for i in range(se.terms - 1, -1, -1):
+        N = N * at + se.N[i, c]
+    end.N[c] = N
+    return port_trigger(mech, k, out, end.mode, end.n, end.F, end.N, end.g, j)
+
+
+@kernel
+def by_series(mech: Mech, k: Moving, end: State, st: Stages, out: Watch, j: int, low: float, high: float) -> float:
+    """Where the series of trigger j passes through 0 between two lengths of the step (Illinois), or -1."""
+    f_low = at_series(mech, k, end, st, out, j, low)
+    f_high = at_series(mech, k, end, st, out, j, high)
+    if not (f_low > 0.0 > f_high):
+        return -1.0
+    side, root = NEITHER, low
+    for _ in range(60):
+        root = low + (high - low) * (f_low / (f_low - f_high))
+        value = at_series(mech, k, end, st, out, j, root)
+        if not low < root < high or value == 0.0:
+            break
+        low, f_low, high, f_high, side = narrowed(low, f_low, high, f_high, side, root, value, value < 0.0)
+        if high - low <= EPS * high:
+            break
+    return root
+
+
+@kernel
+def is_load(j: int, y: State) -> bool:
+    """Whether trigger j is the load of a contact: by Hertz it is next to nothing long before it is 0."""
+    return bool(j < 2 * y.mode.shape[0] and j % 2 == 1)
+
+
+@kernel
+def locate_trigger(
+    mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, out: Watch, h: float, first: int
+) -> tuple[float, int]:
+    """Length of the step that ends where the first trigger vanishes, and that trigger; ``end`` is left there.
+
+    Steps of variable length: by root and slope of the polynomial of the trigger, then by regula falsi (Illinois); a
+    step at whose end another trigger is below 0 replaces the upper bound.  What the polynomial alone shows is tried by
+    a step to there: trigger -1 where that finds nothing, and it is a step like any other.  Length 0 where a step could
+    not be made.
+    """
+    inside = out.where
+    if out.opened > 0:
+        gaps(mech, k, y.t, y.q, y.v, y.lam, out)
+    triggers(mech, k, out, y.mode, y.n, y.F, y.N, y.g, y.lam, True)
+    j = first
+    n_slips = 2 * y.mode.shape[0]
+    opens = out.rate[first - n_slips] if is_open(mech, first - n_slips) else 0.0
+    low, f_low = 0.0, max(out.trigger[j], 0.0)
+    if out.opened > 0:
+        gaps(mech, k, end.t, end.q, end.v, end.lam, out)
+    triggers(mech, k, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
+    high, f_high = h, min(out.trigger[j], 0.0)
+    side = NEITHER
+    step = h
+    left = np.inf
+    # where friction ends or begins; loads that set in or bend are found from both sides
+    exact = (first < n_slips and first % 2 == 0) or is_open(mech, first - n_slips)
+    guess, slope = by_polynomial(st, out, first, h) if inside >= 1.0 and exact else (-1.0, 0.0)
+    if is_open(mech, first - n_slips) and out.inner[0, first] <= 10.0 * grain(mech, out, first, y):
+        guess, slope = from_touch(st, out, first, h, opens), 0.0
+    of_series = has_series(st)
+    for i in range(80):
+        root = by_series(mech, k, end, st, out, j, low, high) if of_series and j < n_slips else -1.0
+        if root > 0.0:
+            guess, slope = root, 0.0
+        gap = f_low - f_high
+        step = low + (high - low) * (f_low / gap if gap > 0.0 and f_high < 0.0 and f_low > 0.0 else 0.5)
+        if i % 8 == 7:
+            step = 0.5 * (low + high)
+        step = min(max(step, low + 1e-3 * (high - low)), high - 1e-3 * (high - low))
+        if inside < 1.0 and not low < guess < inside * high:
+            step = inside * high
+        elif low < guess < high:
+            step = guess
+        if not step_to(mech, k, w, y, end, st, c, step):
+            if step != guess:
+                return 0.0, j
+            guess, slope = -1.0, 0.0
+            continue
+        worst = violated(mech, k, w, out, y, end, st)
+        if inside < 1.0 and (worst < 0 or (out.where < 1.0 and i >= DOUBTS)):
+            return step, -1
+        inside = out.where
+        if inside < 1.0:
+            j, high, f_high = worst, step, 0.0
+            low = low if out.where * high > low else 0.0
+            f_low = max(out.inner[0, j], 0.0) if low == 0.0 else 0.0
+            continue
+        value = out.trigger[j]
+        # where a step begins beyond by what `violated` takes for nothing, no shorter one comes nearer
+        limit = grain(mech, out, j, end) * (1.0 if f_low > 0.0 else 10.0)
+        if worst >= 0 and worst != j and out.trigger[j] >= -limit:
+            j = worst
+            high, f_high, f_low = step, min(out.trigger[j], 0.0), 0.0
+            continue
+        if is_load(j, y) and not of_series:
+            limit = 0.0
+        if abs(value) <= limit or high - low <= 8.0 * EPS * max(abs(y.t), abs(h)):
+            break
+        if is_open(mech, j - n_slips):
+            slope = out.rate[j - n_slips]
+        elif j != first or abs(value) > BETTER * left:
+            slope = 0.0
+        left, guess = abs(value), (step - value / slope if slope < 0.0 else -1.0)
+        beyond = value < 0.0 or worst >= 0
+        low, f_low, high, f_high, side = narrowed(low, f_low, high, f_high, side, step, value, beyond)
+    return step, j
+
+
+@kernel
+def last_unique(
+    mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, out: Watch, h: float
+) -> float:
+    """Length of the longest step at whose end friction still has a single solution, by bisection; ``end`` is there."""
+    low, high = 0.0, h
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if middle <= low or middle >= high:
+            break
+        if step_to(mech, k, w, y, end, st, c, middle) and margins(mech, k, w, end, out, False) > 0.0:
+            low = middle
+        else:
+            high = middle
+        if high - low <= 1e-13 * h + 4.0 * EPS * abs(y.t):
+            break
+    if low > 0.0 and step_to(mech, k, w, y, end, st, c, low):
+        margins(mech, k, w, end, out, True)
+    return low

@@ -1,0 +1,1 @@
+"""Impacts of rigid parts: laws, order, rest, impulses."""

@@ -1,0 +1,1 @@
+"""The published fixed-step scheme on the same equations."""

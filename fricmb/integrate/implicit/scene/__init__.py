@@ -1,0 +1,1 @@
+"""What kernels are given of a problem, the state of a run, and what is watched along it."""

@@ -1,0 +1,214 @@
+"""Smooth laws whose slopes differ from stage to stage, as those of friction that is a logarithm of the slip speed.
+
+Newton's method with the one Jacobian of all stages does not converge there.  Its changes are corrected by what the
+slopes of each law, by slip velocities and states, differ by at every stage (Woodbury), as ``turning`` does for
+directions of slip.  That costs a solution a row of a law for each factorization: only runs whose steps have not been
+solved without it pay that.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.compile.lu import lu_factor, lu_solve
+from fricmb.integrate.formulas.tableau import Tableau
+from fricmb.integrate.implicit.equations.slip_rows import carried, slip_gradient
+from fricmb.integrate.implicit.scene.moving import Moving
+from fricmb.integrate.implicit.scene.problem_structs import Mech
+from fricmb.integrate.model.law_values import smooth_force
+from fricmb.integrate.problem import (
+    LAW_SMOOTH,
+    OPEN,
+    Codes,
+    Complexes,
+    Complexes2,
+    Complexes3,
+    Floats,
+    Floats2,
+    Floats3,
+    Ints,
+    Pivots,
+    Problem,
+)
+
+#: Rows of laws, in all stages, up to which changes are corrected: the correction is a full system of so many unknowns.
+TOGETHER = 128
+
+
+class Steep(Layout):
+    """Rows of smooth laws: a law of d directions and n_z states has d + n_z, of its forces and of its rates.
+
+    ``on`` 1 where changes are corrected; ``port`` (k,) and ``start`` (k + 1,) rows of each of the k laws, ``row`` (B,)
+    their places among the unknowns of a stage.  What a law is a function of changes by its slip velocities, ``slip``
+    (B, n) by the velocities, and by its states.  ``base`` (B, w) its slopes in the Jacobian, ``spread`` (s, B, w) what
+    those at the stages differ by.
+
+    ``answer`` (B, l, size): changes of the unknowns by a unit residual in a row, in each of the systems into which the
+    stages fall apart; ``gain`` (B s, B s) changes of what the laws are functions of by such residuals at stages.
+    """
+
+    on: int
+    port: Ints
+    start: Ints
+    row: Ints
+    slip: Floats2
+    base: Floats2
+    spread: Floats3
+    answer: Complexes3
+    gain: Floats2
+    work: Floats
+    change: Floats
+    sizes: Pivots
+    pivots: Pivots
+
+
+def steep_laws_of(problem: Problem, tab: Tableau, n: int, size: int) -> Steep:
+    """Arrays for smooth laws, of n velocities among ``size`` unknowns of a stage; none if they have too many rows."""
+    contacts, s = problem.contacts, len(tab.c)
+    port = np.flatnonzero(contacts.law == LAW_SMOOTH)
+    forces, states = np.diff(contacts.row)[port], np.diff(contacts.z_start)[port]
+    if s * int((forces + states).sum()) > TOGETHER or s == 1:
+        port, forces, states = port[:0], forces[:0], states[:0]
+    state0 = size - problem.n_z
+    row = [
+        place
+        for c, d, nz in zip(port, forces, states, strict=True)
+        for place in (
+            *range(state0 - problem.m + contacts.row[c], state0 - problem.m + contacts.row[c] + d),
+            *range(state0 + contacts.z_start[c], state0 + contacts.z_start[c] + nz),
+        )
+    ]
+    rows, widest = len(row), int((forces + states).max(initial=0))
+    start = np.concatenate([[0], np.cumsum(forces + states)])
+    return Steep(
+        0, port.astype(np.int64), start.astype(np.int64), np.array(row, np.int64), np.zeros((rows, n)),
+        np.zeros((rows, widest)), np.zeros((s, rows, widest)), np.zeros((rows, len(tab.lam), size), complex),
+        np.zeros((rows * s, rows * s)), np.zeros((rows * s) ** 2), np.zeros(rows * s), np.zeros(4, np.int32),
+        np.zeros(rows * s, np.int32),
+    )  # fmt: skip
+
+
+@kernel
+def slopes_of_law(
+    mech: Mech, k: Moving, c: int, opened: bool, g: Floats, z: Floats, N: float, out: Floats2, first: int
+) -> None:
+    """Slopes of the forces and rates of law c by slip velocities and states, into out[first:]."""
+    port = mech.port
+    d, a0 = port.row[c + 1] - port.row[c], port.z_start[c]
+    nz = port.z_start[c + 1] - a0
+    smooth_force(port.laws, c, k.s, g, port.row[c], d, carried(mech, c, N), z, a0, nz)
+    for i in range(d + nz):
+        share = (0.0 if opened else k.share) if i < d else 1.0
+        for j in range(d + nz):
+            place = d + nz + i * (d + 1 + nz) + (j if j < d else j + 1)
+            out[first + i, j] = share * k.s.out[place]
+
+
+@kernel
+def set_base(mech: Mech, k: Moving, steep: Steep, mode: Codes, g: Floats, z: Floats, N: Floats, lam: Floats) -> None:
+    """The slopes of the Jacobian that has just been made, and of slip by velocities there."""
+    port = mech.port
+    for p in range(steep.port.shape[0] if steep.on == 1 else 0):
+        c, first = steep.port[p], steep.start[p]
+        slopes_of_law(mech, k, c, mode[c] == OPEN, g, z, N[c], steep.base, first)
+        for a in range(port.row[c + 1] - port.row[c]):
+            slip_gradient(mech, k, c, a, lam, steep.slip[first + a])
+
+
+@kernel
+def changed(mech: Mech, steep: Steep, p: int, i: int, x: Floats | Complexes) -> Any:
+    """By how much what law p is a function of, its i-th slip velocity or state, changes with the unknowns by x."""
+    c, at = steep.port[p], steep.start[p] + i
+    if i >= mech.port.row[c + 1] - mech.port.row[c]:
+        return x[steep.row[at]]
+    line, total = steep.slip[at], 0.0 * x[0]
+    for a in range(line.shape[0]):
+        total += line[a] * x[a]
+    return total
+
+
+@kernel
+def set_gain(mech: Mech, steep: Steep, tab: Tableau, a: int, i: int, w: Complexes) -> None:
+    """Keep the answer w (size,) of system i to a unit residual in row a."""
+    s, rows = tab.c.shape[0], steep.row.shape[0]
+    steep.answer[a, i] = w
+    for p in range(steep.port.shape[0]):
+        for e in range(steep.start[p + 1] - steep.start[p]):
+            b, value = steep.start[p] + e, changed(mech, steep, p, e, w)
+            for j in range(s):
+                for l in range(s):
+                    old = 0.0 if i == 0 else steep.gain[j * rows + b, l * rows + a]
+                    steep.gain[j * rows + b, l * rows + a] = old + (tab.T[j, i] * tab.Tinv[i, l] * value).real
+
+
+@kernel
+def slopes_at_stages(mech: Mech, k: Moving, steep: Steep, mode: Codes, g: Floats2, z: Floats2, N: Floats2) -> None:
+    """What the slopes at the stages differ by from those of the Jacobian."""
+    for j in range(g.shape[0]):
+        for p in range(steep.port.shape[0]):
+            c = steep.port[p]
+            slopes_of_law(mech, k, c, mode[c] == OPEN, g[j], z[j], N[j, c], steep.spread[j], steep.start[p])
+        steep.spread[j] -= steep.base
+
+
+@kernel
+def correct_slopes(mech: Mech, steep: Steep, tab: Tableau, R: Floats2, w: Complexes2) -> None:
+    """From the changes R (s, size) by the Jacobian to those by the slopes of every stage; ``w`` is space.
+
+    Rows of residuals have slopes with the sign turned round: x = x_0 + J^-1 E (1 - S U J^-1 E)^-1 S U x_0, where J^-1 E
+    are answers, U what laws are functions of, S the spread.
+    """
+    s, rows = R.shape[0], steep.row.shape[0]
+    full = rows * s
+    work = steep.work.reshape(full, full)
+    for p in range(steep.port.shape[0]):
+        first, last = steep.start[p], steep.start[p + 1]
+        for j in range(s):
+            for e in range(last - first):
+                q = j * rows + first + e
+                steep.change[q] = changed(mech, steep, p, e, R[j])
+                for x in range(full):
+                    total = 1.0 if x == q else 0.0
+                    for a in range(first, last):
+                        total -= steep.gain[x, j * rows + a] * steep.spread[j, a, e]
+                    work[x, q] = total
+    if not lu_factor(work, steep.sizes, steep.pivots):
+        return
+    lu_solve(work, steep.change, steep.sizes, steep.pivots)
+    for i in range(tab.lam.shape[0]):
+        w[i, :] = 0.0
+        for p in range(steep.port.shape[0]):
+            first, last = steep.start[p], steep.start[p + 1]
+            for a in range(first, last):
+                part = 0.0j
+                for j in range(s):
+                    for e in range(last - first):
+                        part += tab.Tinv[i, j] * steep.spread[j, a, e] * steep.change[j * rows + first + e]
+                for x in range(R.shape[1]):
+                    w[i, x] += part * steep.answer[a, i, x]
+        for j in range(s):
+            for x in range(R.shape[1]):
+                R[j, x] += (tab.T[j, i] * w[i, x]).real
+
+
+#: Part of its speed at which slip under a law may turn round in one change: beyond rest a steep law says nothing of
+#: what is on this side.
+TURNED = 0.1
+
+
+@kernel
+def part_of_change(mech: Mech, steep: Steep, R: Floats2, g: Floats2) -> float:
+    """Part of the changes R, which are subtracted, by which no slip velocity turns round by more than ``TURNED``."""
+    part = 1.0
+    for p in range(steep.port.shape[0]):
+        first = mech.port.row[steep.port[p]]
+        for a in range(mech.port.row[steep.port[p] + 1] - first):
+            for j in range(R.shape[0]):
+                slip, change = g[j, first + a], changed(mech, steep, p, a, R[j])
+                if slip != 0.0 and change / slip > 1.0 + TURNED:
+                    part = min(part, (1.0 + TURNED) * slip / change)
+    return part

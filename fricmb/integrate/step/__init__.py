@@ -1,1 +1,0 @@
-"""One implicit step: stages condensed to the contacts, its error, and what may end it."""
