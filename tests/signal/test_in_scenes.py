@@ -12,6 +12,7 @@ from scipy.interpolate import CubicSpline, make_interp_spline
 from scipy.optimize import brentq
 
 import fricmb as fm
+from fricmb.integrate import implicit
 from fricmb.integrate.methods.radau import Radau
 
 DRY = fm.laws.Coulomb(mu_s=1.0, mu_k=0.8)
