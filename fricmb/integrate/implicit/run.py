@@ -65,13 +65,13 @@ class Setting(NamedTuple):
     limits: LongestSteps
 
 
-def one_step_loop(setting: Setting) -> Callable[[], int]:
+def one_step_loop(setting: Setting) -> partial[int]:
     """Steps by the one-step formula alone."""
     w = setting.workspace
     return _drive(setting, no_differences(), no_formula(w.y, w.st))
 
 
-def bdf_loop(setting: Setting) -> Callable[[], int]:
+def bdf_loop(setting: Setting) -> partial[int]:
     """BDF between transitions, the one-step formula around them."""
     load_blocks("multistep")
     problem, start, w = setting.problem, setting.start, setting.workspace
@@ -81,7 +81,7 @@ def bdf_loop(setting: Setting) -> Callable[[], int]:
     return _drive(setting, past, formula_of(problem, start, guard))
 
 
-def _drive(setting: Setting, past: Differences, formula: Formula) -> Callable[[], int]:
+def _drive(setting: Setting, past: Differences, formula: Formula) -> partial[int]:
     mech, (k, w, y, end, before, st, out, control) = setting.mech, setting.workspace
     seen = setting.limits.edge, setting.limits.longest
     return partial(
@@ -98,7 +98,7 @@ def run_mechanism(
     progress: Callable[[float], None] | None,
     memory: float | None = None,
     *,
-    loop: Callable[[Setting], Callable[[], int]] | None = None,
+    loop: Callable[[Setting], partial[int]] | None = None,
     made: type[StepTrajectory] = StepTrajectory,
 ) -> StepTrajectory:
     """Steps by a one-step formula, on the index-reduced system; see ``Integrator.integrate``.

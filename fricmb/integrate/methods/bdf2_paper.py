@@ -64,7 +64,7 @@ class Bdf2Paper(Integrator):
         )
 
 
-def _loop(setting: Setting, step: float) -> Callable[[], int]:
+def _loop(setting: Setting, step: float) -> partial[int]:
     """The loop over steps of a length."""
     # slow to load
     from fricmb.integrate.compile.parallel_compile import load_blocks
