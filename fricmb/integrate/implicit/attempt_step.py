@@ -35,14 +35,13 @@ from fricmb.integrate.implicit.events.load_kinks import find_kinks
 from fricmb.integrate.implicit.modes.transition import change_modes
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.output.recorder import Record, copy_state, record_step
+from fricmb.integrate.implicit.scene.control import Control, asked
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import Instant, State
 from fricmb.integrate.implicit.scene.watch import Watch
 from fricmb.integrate.implicit.stages.near_rest import nears_rest
-from fricmb.integrate.implicit.stages.radau_step import (
-    Control,
-    asked,
+from fricmb.integrate.implicit.stages.one_step import (
     end_step,
     error_of,
     has_joints,
@@ -233,7 +232,7 @@ def end_slips(
 IN_VAIN = 1e-6
 
 @block
-def radau_step(
+def attempt_step(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
     rec: Record, part: Codes, stop: float,
 ) -> int:  # fmt: skip

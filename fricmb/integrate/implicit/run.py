@@ -73,7 +73,7 @@ def one_step_loop(setting: Setting) -> partial[int]:
 
 def bdf_loop(setting: Setting) -> partial[int]:
     """BDF between transitions, the one-step formula around them."""
-    load_blocks("multistep")
+    load_blocks("attempt_bdf_step")
     problem, start, w = setting.problem, setting.start, setting.workspace
     guard = guard_at(problem, setting.mech, w.k, w.y, w.st)
     stages = len(w.st.tab.c)

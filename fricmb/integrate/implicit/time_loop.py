@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import run_entry
-from fricmb.integrate.implicit.attempt_step import arrive, grow, radau_step
+from fricmb.integrate.implicit.attempt_step import arrive, attempt_step, grow
 from fricmb.integrate.implicit.bdf.backward_differences import Differences, hand_over, is_slower, may_begin
 from fricmb.integrate.implicit.bdf.bdf_history import Formula, start_past
-from fricmb.integrate.implicit.bdf.bdf_step import multistep
+from fricmb.integrate.implicit.bdf.bdf_step import attempt_bdf_step
 from fricmb.integrate.implicit.between.between_stages import growth_of_slip
 from fricmb.integrate.implicit.equations.accelerations import react
 from fricmb.integrate.implicit.equations.projection import project_velocities
@@ -21,11 +21,14 @@ from fricmb.integrate.implicit.modes.mode_trial import most_light
 from fricmb.integrate.implicit.modes.transition import bring_to_rest, let_go, take_given
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.output.recorder import Record, crowded
+from fricmb.integrate.implicit.scene.control import Control
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import Instant, State
 from fricmb.integrate.implicit.scene.watch import Watch
-from fricmb.integrate.implicit.stages.radau_step import Control, has_joints
+from fricmb.integrate.implicit.stages.one_step import (
+    has_joints,
+)
 from fricmb.integrate.implicit.stages.stages import Stages
 from fricmb.integrate.problem import Codes, Floats
 from fricmb.integrate.run.breakpoints import next_stop, reached, set_window
@@ -136,7 +139,7 @@ def drive(
         elif crowded(rec, y.mode.shape[0]):
             return FULL
         elif past.on == 1:
-            code = multistep(mech, k, w, y, end, st, c, out, rec, past, formula, min(goal - y.t, OF_BDF * seen))
+            code = attempt_bdf_step(mech, k, w, y, end, st, c, out, rec, past, formula, min(goal - y.t, OF_BDF * seen))
             if code == ACCEPTED and is_slower(past, formula.usual):
                 c.h = formula.usual
             elif code == HANDOVER:
@@ -144,7 +147,7 @@ def drive(
                 hand_over(past)
         else:
             t = y.t
-            code = radau_step(mech, k, w, y, end, before, st, c, out, rec, part, goal)
+            code = attempt_step(mech, k, w, y, end, before, st, c, out, rec, part, goal)
             h = y.t - t
             found = may_begin(past, code) and h > 0.0 and (has_joints(y) or c.wanted <= NATURAL * h)
             if found and growth_of_slip(mech, k, y, st, h) <= GROWING:

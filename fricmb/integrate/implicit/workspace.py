@@ -6,6 +6,7 @@ from contextlib import AbstractContextManager
 from typing import NamedTuple
 
 from fricmb.integrate.formulas.tableau import Tableau
+from fricmb.integrate.implicit.scene.control import Control, control_of
 from fricmb.integrate.implicit.scene.dense_rows import has_dense_rows
 from fricmb.integrate.implicit.scene.moving import Moving, lengths, moving_of
 from fricmb.integrate.implicit.scene.pattern import of_pattern
@@ -13,7 +14,6 @@ from fricmb.integrate.implicit.scene.problem_structs import mech_of
 from fricmb.integrate.implicit.scene.state import Instant, State, instant_of, state_of
 from fricmb.integrate.implicit.scene.structure import mechanism_of
 from fricmb.integrate.implicit.scene.watch import Watch, watch_of
-from fricmb.integrate.implicit.stages.radau_step import Control, control_of
 from fricmb.integrate.implicit.stages.stages import Stages, facts_of, stages_of
 from fricmb.integrate.implicit.stages.turning import turning_rows
 from fricmb.integrate.model.forces import longest_call
@@ -59,7 +59,8 @@ def _made(problem: Problem, tab: Tableau) -> RunWorkspace:
     y, end, before = (state_of(problem) for _ in range(3))
     st = stages_of(problem, tab)
     out = watch_of(problem, len(tab.c))
-    return RunWorkspace(moving_of(problem), instant_of(problem), y, end, before, st, out, control_of(problem, st))
+    control = control_of(problem, len(tab.c), len(st.x))
+    return RunWorkspace(moving_of(problem), instant_of(problem), y, end, before, st, out, control)
 
 
 def _sizes(problem: Problem) -> tuple[int, ...]:

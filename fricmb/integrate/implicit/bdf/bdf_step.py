@@ -39,12 +39,12 @@ from fricmb.integrate.implicit.events.event_functions import has_come_to_rest, v
 from fricmb.integrate.implicit.events.load_kinks import find_kinks
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.output.recorder import Record, copy_state, record_step
+from fricmb.integrate.implicit.scene.control import Control
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import Instant, State
 from fricmb.integrate.implicit.scene.watch import Watch
-from fricmb.integrate.implicit.stages.radau_step import (
-    Control,
+from fricmb.integrate.implicit.stages.one_step import (
     has_joints,
     last_stage,
     measure,
@@ -215,7 +215,7 @@ def inside(st: Stages, c: Control, past: Differences) -> None:
 
 
 @block
-def multistep(
+def attempt_bdf_step(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, out: Watch, rec: Record,
     past: Differences, formula: Formula, left: float,
 ) -> int:  # fmt: skip

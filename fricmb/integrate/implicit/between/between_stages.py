@@ -15,10 +15,10 @@ from fricmb.integrate.implicit.between.slip_growth import growth
 from fricmb.integrate.implicit.between.slow_slip import slow_slip_defect
 from fricmb.integrate.implicit.equations.forces import directions, move
 from fricmb.integrate.implicit.equations.slip_rows import lightness
+from fricmb.integrate.implicit.scene.control import Control, asked
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import State
-from fricmb.integrate.implicit.stages.radau_step import Control, asked
 from fricmb.integrate.implicit.stages.stages import Stages, bring_up_to_date
 from fricmb.integrate.problem import LAW_CONSTANT
 

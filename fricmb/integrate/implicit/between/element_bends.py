@@ -17,10 +17,10 @@ from fricmb.integrate.implicit.between.knots import AT_AN_END, NEAR, NOWHERE, na
 from fricmb.integrate.implicit.between.law_defect import ROUND_OFF
 from fricmb.integrate.implicit.between.slow_slip import NEARER, TIMES, WITHIN, line_at
 from fricmb.integrate.implicit.equations.forces import load_at, move, scatter
+from fricmb.integrate.implicit.scene.control import Control, asked
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import State
-from fricmb.integrate.implicit.stages.radau_step import Control, asked
 from fricmb.integrate.implicit.stages.stages import Stages
 from fricmb.integrate.model.forces import element_forces, evaluate
 from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, Codes, Floats, Floats2

@@ -14,10 +14,10 @@ from fricmb.integrate.compile.template import call
 from fricmb.integrate.implicit.between.element_bends import bring_to_dofs, look
 from fricmb.integrate.implicit.between.knots import NEAR
 from fricmb.integrate.implicit.between.slow_slip import WITHIN
+from fricmb.integrate.implicit.scene.control import Control, asked
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import State
-from fricmb.integrate.implicit.stages.radau_step import Control, asked
 from fricmb.integrate.implicit.stages.stages import Stages
 from fricmb.integrate.model.forces import Scratch, gather
 from fricmb.integrate.model.problem_structs import Spread, Table

@@ -8,10 +8,10 @@ from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.formulas.tableau import by_line
 from fricmb.integrate.implicit.equations.slip_rows import lightness
+from fricmb.integrate.implicit.scene.control import Control, asked
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import State
-from fricmb.integrate.implicit.stages.radau_step import Control, asked
 from fricmb.integrate.implicit.stages.stages import Stages
 from fricmb.integrate.model.friction_cone import stick_limit
 from fricmb.integrate.problem import LAW_SMOOTH, STICK

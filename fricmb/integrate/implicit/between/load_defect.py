@@ -16,11 +16,11 @@ from fricmb.integrate.formulas.tableau import by_line, largest_in_step
 from fricmb.integrate.implicit.equations.forces import call_joint, directions, friction_at, load_place, move
 from fricmb.integrate.implicit.equations.instant_matrix import NONE, instant_matrix, solve_instant
 from fricmb.integrate.implicit.equations.slip_rows import friction_coefficient, lightness
+from fricmb.integrate.implicit.scene.control import Control, asked
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import Instant, State
 from fricmb.integrate.implicit.scene.watch import Watch
-from fricmb.integrate.implicit.stages.radau_step import Control, asked
 from fricmb.integrate.implicit.stages.stages import Stages, bring_up_to_date
 from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import LAW_SMOOTH, SLIP

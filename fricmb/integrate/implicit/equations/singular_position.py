@@ -7,11 +7,11 @@ import numpy as np
 from fricmb.integrate.compile.band import factor_band, spread_of_pivots
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.implicit.equations.instant_matrix import NONE, instant_matrix, solve_instant
+from fricmb.integrate.implicit.scene.control import Control
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech, first_multiplier
 from fricmb.integrate.implicit.scene.state import Instant, State
 from fricmb.integrate.implicit.scene.watch import Watch
-from fricmb.integrate.implicit.stages.radau_step import Control
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.breakpoints import EPS
 

@@ -9,11 +9,14 @@ from fricmb.integrate.formulas.crossing import evaluate, first_crossing
 from fricmb.integrate.implicit.equations.forces import is_open
 from fricmb.integrate.implicit.events.event_functions import gaps, grain, port_trigger, triggers, violated
 from fricmb.integrate.implicit.modes.uniqueness import margins
+from fricmb.integrate.implicit.scene.control import Control
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import Instant, State
 from fricmb.integrate.implicit.scene.watch import Watch
-from fricmb.integrate.implicit.stages.radau_step import Control, step_to
+from fricmb.integrate.implicit.stages.one_step import (
+    step_to,
+)
 from fricmb.integrate.implicit.stages.stages import Stages
 from fricmb.integrate.run.breakpoints import EPS
 

@@ -18,11 +18,11 @@ from fricmb.integrate.implicit.impacts.impact_resume import go_on
 from fricmb.integrate.implicit.impacts.impact_rows import accelerations_of_gaps, rows_at
 from fricmb.integrate.implicit.impacts.impact_surfaces import SAME, SHORTEST, STILL
 from fricmb.integrate.implicit.output.recorder import Record, copy_state
+from fricmb.integrate.implicit.scene.control import Control
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import Instant, State
 from fricmb.integrate.implicit.scene.watch import Watch
-from fricmb.integrate.implicit.stages.radau_step import Control
 from fricmb.integrate.mechanism import APART, RIGID, Mechanism
 from fricmb.integrate.problem import NORMAL_REACTION, Codes, Floats, Floats2, Ints, Problem
 from fricmb.integrate.run.breakpoints import EPS

@@ -15,11 +15,11 @@ from fricmb.integrate.implicit.modes.mode_trial import ARRIVES, RESTED, SLIPS_ON
 from fricmb.integrate.implicit.modes.transition import bears, bring_to_rest, let_go, turn_with_slip
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.output.recorder import Record, copy_state
+from fricmb.integrate.implicit.scene.control import Control
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import Instant, State
 from fricmb.integrate.implicit.scene.watch import Watch
-from fricmb.integrate.implicit.stages.radau_step import Control
 from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.problem import SLIP, STICK, Codes
 from fricmb.integrate.run.breakpoints import set_window

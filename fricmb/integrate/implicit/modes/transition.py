@@ -16,11 +16,11 @@ from fricmb.integrate.implicit.modes.mode_enumeration import FOUND, SEVERAL
 from fricmb.integrate.implicit.modes.mode_trial import ARRIVES, LENT, LETS_GO, RESTED, SLIPS_ON
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.output.recorder import Record, copy_state
+from fricmb.integrate.implicit.scene.control import Control
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import Instant, State
 from fricmb.integrate.implicit.scene.watch import Watch
-from fricmb.integrate.implicit.stages.radau_step import Control
 from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes
 from fricmb.integrate.run.breakpoints import set_window

@@ -9,10 +9,10 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.implicit.equations.forces import is_open
+from fricmb.integrate.implicit.scene.control import Control
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import State
 from fricmb.integrate.implicit.scene.structure import mechanism_of
-from fricmb.integrate.implicit.stages.radau_step import Control
 from fricmb.integrate.implicit.stages.stages import Stages
 from fricmb.integrate.problem import Codes2, Floats2, Floats3, Ints, Problem
 

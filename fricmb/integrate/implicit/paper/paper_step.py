@@ -15,12 +15,17 @@ from fricmb.integrate.implicit.attempt_step import grow
 from fricmb.integrate.implicit.equations.accelerations import react
 from fricmb.integrate.implicit.equations.slip_rows import aim, keep_held
 from fricmb.integrate.implicit.output.recorder import Record, copy_state, crowded, record_step
+from fricmb.integrate.implicit.scene.control import Control
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import Instant, State, state_of
 from fricmb.integrate.implicit.scene.watch import Watch
 from fricmb.integrate.implicit.stages.near_rest import choose_forms, prepare_steep, prepare_turns
-from fricmb.integrate.implicit.stages.radau_step import Control, last_stage, measure, measure_states
+from fricmb.integrate.implicit.stages.one_step import (
+    last_stage,
+    measure,
+    measure_states,
+)
 from fricmb.integrate.implicit.stages.stage_newton import iterate_stages
 from fricmb.integrate.implicit.stages.stages import Stages, bring_up_to_date, factor_stages, linearise
 from fricmb.integrate.model.friction_cone import cone_margin

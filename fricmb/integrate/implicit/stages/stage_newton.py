@@ -10,6 +10,7 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.implicit.equations.forces import forces, move
 from fricmb.integrate.implicit.equations.friction_rows import friction_residual
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
@@ -21,7 +22,13 @@ from fricmb.integrate.implicit.stages.stages import (
     stage_positions,
     stage_residual,
 )
-from fricmb.integrate.implicit.stages.steep_laws import correct_slopes, part_of_change, slopes_at_stages
+from fricmb.integrate.implicit.stages.steep_laws import (
+    begin_tries,
+    correct_slopes,
+    missed_by_laws,
+    slopes_at_stages,
+    try_next,
+)
 from fricmb.integrate.implicit.stages.turning import correct_turns, spread_of_stages
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, SLIP
 
@@ -82,8 +89,9 @@ def friction_alone(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> Non
 
 #: Newton's iterations in a step before it is given up.
 ITERATIONS = 12
-#: The same where changes are cut lest slip under a steep law turn round.
-STEEP_ITERATIONS = 40
+#: The same where laws are asked at slip velocities of their own; part of the accuracy, times their largest force, that
+#: these may miss then.
+STEEP_ITERATIONS, MISSED = 40, 10.0
 #: Part of the accuracy that factors may leave of the motion's rows while further iterations are of friction alone.
 SOLVED = 0.1
 #: Part by which a change of a state counts beside one of a velocity, where an iteration is of the whole structure: most
@@ -176,9 +184,12 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, made: 
     left = left_by_factors(mech, h, made)
     exact = left if is_linear(mech, y) else 1.0
     st.found, st.fresh = 1.0, 0
-    for iteration in range(ITERATIONS if st.steep.on == 0 else STEEP_ITERATIONS):
-        part = 1.0
-        alone = st.plain == 1 and unsolved <= SOLVED * accuracy
+    steep = st.steep.on == 1
+    if steep:
+        follow_slip(mech, k, y, st, h)
+        begin_tries(mech, st.steep, y.g, st.g)
+    for iteration in range(STEEP_ITERATIONS if steep else ITERATIONS):
+        alone = st.plain == 1 and not steep and unsolved <= SOLVED * accuracy
         if alone:
             friction_alone(mech, k, y, st, h)
         else:
@@ -189,18 +200,20 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, made: 
         newton_change(mech, st, alone)
         if st.turns.near > 0:
             correct_turns(mech, st.turns, tab, st.R, st.w)
-        if st.steep.on == 1:
-            slopes_at_stages(mech, k, st.steep, y.mode, st.g, st.z, st.N)
+        if steep:
+            slopes_at_stages(mech, k, st.steep, y.mode, st.z, st.N)
             correct_slopes(mech, st.steep, tab, st.R, st.w)
-            part = part_of_change(mech, st.steep, st.R, st.g)
-            if part < 1.0:
-                st.R[:] *= part
         change = apply_change(st)
         if not change < 1e30:
             return 0
-        if part < 1.0:
-            unsolved, last = np.inf, np.inf
-            continue
+        if steep:
+            follow_slip(mech, k, y, st, h)
+            if not try_next(mech, st.steep, st.g, iteration):
+                unsolved, last = np.inf, np.inf
+                continue
+            if missed_by_laws(mech, k, st.steep, y.mode, st.F, st.z, st.N) > MISSED * accuracy:
+                last = change
+                continue
         if not alone:
             unsolved = left * change
         rate = change / last if last < np.inf else exact
@@ -209,13 +222,22 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, made: 
         if change <= 1e-15 or (rate < 1.0 and change * rate / (1.0 - rate) <= accuracy):
             end_iteration(mech, y, st, h, change <= accuracy)
             return iteration + 1
-        if last < np.inf and (rate >= 2.0 or (iteration > 2 and rate >= 0.95)):
+        if last < np.inf and not steep and (rate >= 2.0 or (iteration > 2 and rate >= 0.95)):
             if not is_noise(mech, st):
                 return 0
             end_iteration(mech, y, st, h, False)
             return iteration + 1
         last = change
     return 0
+
+
+@kernel
+def follow_slip(mech: Mech, k: Moving, y: State, st: Stages, h: float) -> None:
+    """Slip velocities and loads at the stages, from the velocities there."""
+    for i in range(st.V.shape[0]):
+        stage_positions(y, st, h, i)
+        move(mech, k, y.t + st.tab.c[i] * h, st.Q[i], st.V[i])
+        forces(mech, k, st.lam[i], st.F[i], st.N[i], st.g[i])
 
 
 @kernel

@@ -35,7 +35,7 @@ from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech, mech_of
 from fricmb.integrate.implicit.scene.state import Held, State, held_of
 from fricmb.integrate.implicit.scene.structure import mechanism_of
-from fricmb.integrate.implicit.stages.steep_laws import Steep, set_base, steep_laws_of
+from fricmb.integrate.implicit.stages.steep_laws import Steep, ask_at_tried, set_base, steep_laws_of
 from fricmb.integrate.implicit.stages.turning import Turns, turns_of
 from fricmb.integrate.problem import (
     LAW_SMOOTH,
@@ -287,6 +287,8 @@ def stage_residual(mech: Mech, k: Moving, y: State, st: Stages, h: float, i: int
     for a in range(m):
         r[n + a] = k.phi_rate[a]
     friction_residual(mech, k, y.mode, y.n, st.F[i], st.z[i], st.N[i], st.g[i], st.g[i], st.zd[i], r, n + m, True)
+    if st.steep.on == 1:
+        ask_at_tried(mech, k, st.steep, y.mode, i, st.F[i], st.z[i], st.N[i], st.g[i], st.zd[i], r, n + m)
     for a in range(nz):
         rate = 0.0
         for j in range(s):

@@ -4,6 +4,9 @@ Newton's method with the one Jacobian of all stages does not converge there.  It
 slopes of each law, by slip velocities and states, differ by at every stage (Woodbury), as ``turning`` does for
 directions of slip.  That costs a solution a row of a law for each factorization: only runs whose steps have not been
 solved without it pay that.
+
+A law is asked at a slip velocity of its own, ``tried``, and continued along its slope there: where a change would turn
+slip round, far to the other side of rest, ``tried`` goes there slowly while all else changes as it has to.
 """
 
 from __future__ import annotations
@@ -45,7 +48,7 @@ class Steep(Layout):
     ``on`` 1 where changes are corrected; ``port`` (k,) and ``start`` (k + 1,) rows of each of the k laws, ``row`` (B,)
     their places among the unknowns of a stage.  What a law is a function of changes by its slip velocities, ``slip``
     (B, n) by the velocities, and by its states.  ``base`` (B, w) its slopes in the Jacobian, ``spread`` (s, B, w) what
-    those at the stages differ by.
+    those at the stages differ by, ``tried`` (s, m) slip velocities at which laws are asked.
 
     ``answer`` (B, l, size): changes of the unknowns by a unit residual in a row, in each of the systems into which the
     stages fall apart; ``gain`` (B s, B s) changes of what the laws are functions of by such residuals at stages.
@@ -58,6 +61,7 @@ class Steep(Layout):
     slip: Floats2
     base: Floats2
     spread: Floats3
+    tried: Floats2
     answer: Complexes3
     gain: Floats2
     work: Floats
@@ -86,7 +90,8 @@ def steep_laws_of(problem: Problem, tab: Tableau, n: int, size: int) -> Steep:
     start = np.concatenate([[0], np.cumsum(forces + states)])
     return Steep(
         0, port.astype(np.int64), start.astype(np.int64), np.array(row, np.int64), np.zeros((rows, n)),
-        np.zeros((rows, widest)), np.zeros((s, rows, widest)), np.zeros((rows, len(tab.lam), size), complex),
+        np.zeros((rows, widest)), np.zeros((s, rows, widest)), np.zeros((s, problem.m if rows else 0)),
+        np.zeros((rows, len(tab.lam), size), complex),
         np.zeros((rows * s, rows * s)), np.zeros((rows * s) ** 2), np.zeros(rows * s), np.zeros(4, np.int32),
         np.zeros(rows * s, np.int32),
     )  # fmt: skip
@@ -146,12 +151,12 @@ def set_gain(mech: Mech, steep: Steep, tab: Tableau, a: int, i: int, w: Complexe
 
 
 @kernel
-def slopes_at_stages(mech: Mech, k: Moving, steep: Steep, mode: Codes, g: Floats2, z: Floats2, N: Floats2) -> None:
+def slopes_at_stages(mech: Mech, k: Moving, steep: Steep, mode: Codes, z: Floats2, N: Floats2) -> None:
     """What the slopes at the stages differ by from those of the Jacobian."""
-    for j in range(g.shape[0]):
+    for j in range(z.shape[0]):
         for p in range(steep.port.shape[0]):
             c = steep.port[p]
-            slopes_of_law(mech, k, c, mode[c] == OPEN, g[j], z[j], N[j, c], steep.spread[j], steep.start[p])
+            slopes_of_law(mech, k, c, mode[c] == OPEN, steep.tried[j], z[j], N[j, c], steep.spread[j], steep.start[p])
         steep.spread[j] -= steep.base
 
 
@@ -195,20 +200,80 @@ def correct_slopes(mech: Mech, steep: Steep, tab: Tableau, R: Floats2, w: Comple
                 R[j, x] += (tab.T[j, i] * w[i, x]).real
 
 
-#: Part of its speed at which slip under a law may turn round in one change: beyond rest a steep law says nothing of
-#: what is on this side.
-TURNED = 0.1
+#: Part of the slip velocity at the start of a step that a predicted one has to have.
+NEAR = 0.1
 
 
 @kernel
-def part_of_change(mech: Mech, steep: Steep, R: Floats2, g: Floats2) -> float:
-    """Part of the changes R, which are subtracted, by which no slip velocity turns round by more than ``TURNED``."""
-    part = 1.0
+def begin_tries(mech: Mech, steep: Steep, start: Floats, g: Floats2) -> None:
+    """Let laws be asked at the predicted slip velocities g first, where these are not far from those at the start."""
     for p in range(steep.port.shape[0]):
-        first = mech.port.row[steep.port[p]]
-        for a in range(mech.port.row[steep.port[p] + 1] - first):
-            for j in range(R.shape[0]):
-                slip, change = g[j, first + a], changed(mech, steep, p, a, R[j])
-                if slip != 0.0 and change / slip > 1.0 + TURNED:
-                    part = min(part, (1.0 + TURNED) * slip / change)
-    return part
+        c = steep.port[p]
+        for a in range(mech.port.row[c], mech.port.row[c + 1]):
+            for j in range(g.shape[0]):
+                near = NEAR * abs(start[a]) <= g[j, a] * np.sign(start[a]) <= abs(start[a]) / NEAR
+                steep.tried[j, a] = g[j, a] if near else start[a]
+
+
+@kernel
+def ask_at_tried(
+    mech: Mech, k: Moving, steep: Steep, mode: Codes, i: int, F: Floats, z: Floats, N: Floats, g: Floats, zd: Floats,
+    r: Floats, r0: int,
+) -> None:  # fmt: skip
+    """Residuals r[r0:] of the forces of laws at stage i, and rates of their states, by their values at ``tried``."""
+    port = mech.port
+    for p in range(steep.port.shape[0]):
+        c = steep.port[p]
+        first, a0 = port.row[c], port.z_start[c]
+        d, nz = port.row[c + 1] - first, port.z_start[c + 1] - a0
+        smooth_force(port.laws, c, k.s, steep.tried[i], first, d, carried(mech, c, N[c]), z, a0, nz)
+        for e in range(d + nz):
+            value = k.s.out[e]
+            for b in range(d):
+                value += k.s.out[d + nz + e * (d + 1 + nz) + b] * (g[first + b] - steep.tried[i, first + b])
+            if e < d:
+                r[r0 + first + e] = F[first + e] - (0.0 if mode[c] == OPEN else k.share * value)
+            else:
+                zd[a0 + e - d] = value
+
+
+#: Iterations after which slip does not turn round at once; part of its speed at which it then may.
+FREE, TURNED = 3, 0.1
+
+
+@kernel
+def try_next(mech: Mech, steep: Steep, g: Floats2, iteration: int) -> bool:
+    """Let laws be asked at slip velocities g next, but what turns round there slowly; whether none does.
+
+    Under friction that goes with the logarithm of slip speed Newton overshoots from above the solution to far on the
+    other side, and back, without end; from below it comes near from one side.
+    """
+    free = True
+    for p in range(steep.port.shape[0]):
+        c = steep.port[p]
+        for a in range(mech.port.row[c], mech.port.row[c + 1]):
+            for j in range(g.shape[0]):
+                here, to = steep.tried[j, a], g[j, a]
+                if iteration >= FREE and here * to < 0.0 and abs(to) > TURNED * abs(here):
+                    to = -TURNED * here
+                    free = False
+                steep.tried[j, a] = to
+    return free
+
+
+@kernel
+def missed_by_laws(mech: Mech, k: Moving, steep: Steep, mode: Codes, F: Floats2, z: Floats2, N: Floats2) -> float:
+    """Largest miss of a force from what its law says at ``tried``, over the largest force of that row in the step."""
+    port, worst = mech.port, 0.0
+    for p in range(steep.port.shape[0]):
+        c = steep.port[p]
+        first, a0 = port.row[c], port.z_start[c]
+        d, nz = port.row[c + 1] - first, port.z_start[c + 1] - a0
+        for j in range(F.shape[0] if mode[c] != OPEN else 0):
+            smooth_force(port.laws, c, k.s, steep.tried[j], first, d, carried(mech, c, N[j, c]), z[j], a0, nz)
+            for a in range(d):
+                size = 1e-290
+                for i in range(F.shape[0]):
+                    size = max(size, abs(F[i, first + a]))
+                worst = max(worst, abs(F[j, first + a] - k.share * k.s.out[a]) / size)
+    return float(worst)

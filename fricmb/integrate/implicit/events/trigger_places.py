@@ -1,0 +1,34 @@
+"""Where in the list of triggers each one stands: two a port, then one a joint, then one a kink of a port's load or law.
+
+Of a port's two the first is its slip, or what it could still bear where it sticks, the second its load.  Those of ports
+and joints end a mode; at a kink a step ends, and nothing changes but the polynomials.
+"""
+
+from __future__ import annotations
+
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.implicit.scene.problem_structs import Mech
+
+
+@kernel
+def first_joint(mech: Mech) -> int:
+    """The trigger of the first joint, behind those of ports."""
+    return int(2 * mech.port.joint.shape[0])
+
+
+@kernel
+def first_kink(mech: Mech) -> int:
+    """The trigger of the first kink, behind those that end a mode."""
+    return int(first_joint(mech) + mech.joint.port.shape[0])
+
+
+@kernel
+def is_of_port(mech: Mech, j: int) -> bool:
+    """Whether trigger j is one of a port: of port j // 2."""
+    return bool(0 <= j < first_joint(mech))
+
+
+@kernel
+def changes_modes(mech: Mech, j: int) -> bool:
+    """Whether a mode ends where trigger j falls below 0."""
+    return bool(0 <= j < first_kink(mech))
