@@ -13,37 +13,45 @@ from numpy.polynomial import legendre
 from scipy.integrate import solve_ivp
 
 from fricmb.integrate.compile.kernel import entry
-from fricmb.integrate.compile.room import room
 from fricmb.integrate.formulas.step_control import ONE_STEP_RUNGS, ladder
 from fricmb.integrate.formulas.tableau import radau
+from fricmb.integrate.implicit.run import _set_up
+from fricmb.integrate.implicit.scene.control import Control
+from fricmb.integrate.implicit.scene.moving import Moving
+from fricmb.integrate.implicit.scene.problem_structs import Mech, mech_of
+from fricmb.integrate.implicit.scene.state import Instant, State
+from fricmb.integrate.implicit.stages.one_step import end_step, error_of, try_step
+from fricmb.integrate.implicit.stages.stages import Stages
+from fricmb.integrate.implicit.time_loop import begin
+from fricmb.integrate.implicit.workspace import run_workspace
 from fricmb.integrate.integrator import Tolerance
-from fricmb.integrate.methods.blocks_of_run import load_stages
-from fricmb.integrate.methods.run_setup import Collector, set_accuracy
-from fricmb.integrate.methods.run_workspace import implicit_step, made
-from fricmb.integrate.model.forces import Scratch
-from fricmb.integrate.model.problem_structs import Packed
-from fricmb.integrate.model.state import State
 from fricmb.integrate.problem import SLIP, STICK, Contacts, Elements, Linear, Problem, Signals, Start, Templates
-from fricmb.integrate.run.workspace import Workspace
-from fricmb.integrate.step.one_step import attempt, finish
-from fricmb.integrate.step.one_step_room import Accuracy, OneStep
-from fricmb.integrate.step.step_error import step_error
 
 
 @entry
-def one_try(packed: Packed, s: Scratch, y: State, end: State, one: OneStep, acc: Accuracy, h: float) -> float:
+def one_try(mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, h: float) -> float:
     """A step from y; its end in ``end``.  The error that it is given, -1 where it is not solved."""
-    if not attempt(packed, s, y, one, acc, h):
+    if not try_step(mech, k, y, st, c, h):
         return -1.0
-    error = step_error(packed, s, y, one, acc, h)
-    finish(packed, s, end, one, acc, h)
-    return error
+    error = error_of(c, y, st, h)
+    return error if end_step(mech, k, w, y, end, st, c, h) else -2.0
 
 
-def begun(problem, start, t_end):
-    """A run in a workspace of its own."""
-    load_stages(problem)
-    return Collector(problem, start, t_end, Workspace(made(problem)).rooms)
+class Begun:
+    """A run at its start, with modes, forces and accelerations there."""
+
+    def __init__(self, problem, start, t_end, stages=5, rtol=1e-6):
+        self.mech = mech_of(problem)
+        self.lent = run_workspace(problem, radau(stages))
+        self.rooms = self.lent.__enter__()
+        k, w, self.y, self.end, _, self.st, out, c = self.rooms
+        small, reach = _set_up(self.rooms, problem, start, t_end, Tolerance(rtol=rtol))
+        self.part = np.zeros(problem.n_c, np.int8)
+        self.code = begin(self.mech, k, w, self.y, c, out, self.part, start.mode is not None, small, reach)
+
+    def step(self, h):
+        k, w, y, end, _, st, _, c = self.rooms
+        return one_try(self.mech, k, w, y, end, st, c, h)
 
 
 @entry
@@ -109,8 +117,7 @@ def test_which_contacts_hold_at_an_instant(seed):
     arrays = Arrays(seed, n=6, m=4)
     F, rate = modes_at_rest(arrays)
     rest = Start(t=0.0, q=np.zeros(6), v=np.zeros(6), z=np.zeros(0))
-    run = begun(arrays.problem(), rest, 1.0)
-    run.begin()
+    run = Begun(arrays.problem(), rest, 1.0)
     np.testing.assert_allclose(run.y.F, F, atol=1e-9)
     assert ((run.y.mode == STICK) == (np.abs(F) < arrays.mu * arrays.N * (1 - 1e-12))).all()
     np.testing.assert_allclose(run.y.a, arrays.accelerations(np.zeros(6), np.zeros(6), F), atol=1e-9)
@@ -160,17 +167,12 @@ def test_a_step_of_given_modes(seed, stages):
     q, h, rtol = 0.1 * rng.normal(size=6), {3: 0.02, 5: 0.2}[stages], 1e-6
     mode = np.where(slipping, SLIP, STICK).astype(np.int8)
     start = Start(t=0.0, q=q, v=v, z=np.zeros(0), mode=mode, direction=sign * slipping)
-    problem = arrays.problem()
-    run = begun(problem, start, 1.0)
-    acc = set_accuracy(run, Tolerance(rtol=rtol))
-    one = room(implicit_step(problem, radau(stages)))
-    run.begin()
+    run = Begun(arrays.problem(), start, 1.0, stages, rtol)
     assert (np.asarray(run.y.mode) == mode).all()
-    run.end.q[:], run.end.v[:], run.end.mode[:], run.end.n[:] = q, v, mode, sign * slipping
-    error = one_try(run.packed, run.scratch, run.y, run.end, one, acc, h)
+    error = run.step(h)
     V, F = stages_by_hand(arrays, stages, h, q, v, slipping, sign)
-    np.testing.assert_allclose(one.st.V, V, atol=1e-11)
-    np.testing.assert_allclose(one.w.F, F, atol=1e-8)
+    np.testing.assert_allclose(run.st.V, V, atol=1e-11)
+    np.testing.assert_allclose(run.st.F, F, atol=1e-8)
     np.testing.assert_allclose(run.end.v, V[-1], atol=1e-11)
     np.testing.assert_allclose(run.end.q, q + h * np.asarray(radau(stages).A)[-1] @ V, atol=1e-12)
     # the last Legendre coefficients of the polynomials through the start and the stages, in units of the tolerance
@@ -194,10 +196,8 @@ def test_a_step_is_as_accurate_as_its_order():
 
     problem, errors = arrays.problem(), []
     for h in (1.6, 0.8):
-        run = begun(problem, Start(t=0.0, q=q, v=v, z=np.zeros(0)), 10.0)
-        one = room(implicit_step(problem, radau(5)))
-        run.begin()
-        one_try(run.packed, run.scratch, run.y, run.end, one, set_accuracy(run, Tolerance(rtol=1e-3)), h)
+        run = Begun(problem, Start(t=0.0, q=q, v=v, z=np.zeros(0)), 10.0, 5, 1e-3)
+        assert run.step(h) > 0.0
         exact = solve_ivp(rates, (0.0, h), np.concatenate([q, v]), method="DOP853", rtol=1e-13, atol=1e-15).y[:, -1]
         errors.append(np.abs(np.asarray(run.end.v) - exact[4:]).max())
     assert 8.0 < np.log2(errors[0] / errors[1]) < 11.0

@@ -7,7 +7,7 @@ import pytest
 from numpy.polynomial import Polynomial
 
 from fricmb.integrate.compile.kernel import entry
-from fricmb.integrate.formulas.crossing import crossing_at_stages, first_below, first_crossing
+from fricmb.integrate.formulas.crossing import first_below, first_crossing
 from fricmb.integrate.formulas.tableau import Tableau, radau
 from fricmb.integrate.problem import Floats
 
@@ -17,12 +17,6 @@ def search(tab: Tableau, first: float, values: Floats, series: Floats, found: Fl
     """Crossing, and the two points that enclose it into ``found``."""
     found[0], found[1] = first_below(tab, first, values, series)
     return first_crossing(tab, first, values, series)
-
-
-@entry
-def search_stages(tab: Tableau, first: float, values: Floats) -> float:
-    """Crossing by straight lines from stage to stage."""
-    return crossing_at_stages(tab, first, values)
 
 
 def tried(stages: int, curve: Polynomial) -> tuple[float, np.ndarray]:
@@ -71,13 +65,3 @@ def test_the_first_root_of_random_polynomials():
         if len(roots) == 1:
             assert x == pytest.approx(roots[0], rel=1e-11)
     assert crossed > 100
-
-
-def test_a_jump_between_stages_is_no_crossing_and_straight_lines_find_one():
-    tab = radau(5)
-    jumped = np.full(5, 0.1)
-    x, _ = tried(5, Polynomial.fit([0.0, *tab.c], [1.0, *jumped], 5, domain=[-1, 1]).convert())
-    assert x < 1.0  # the polynomial through a jump swings below 0
-    assert search_stages(tab, 1.0, jumped) == 2.0
-    line = 1.0 - 1.6 * np.array(tab.c)
-    assert search_stages(tab, 1.0, line) == pytest.approx(1.0 / 1.6, rel=1e-12)

@@ -6,9 +6,9 @@ import sys
 
 from fricmb.integrate.compile import parallel_compile
 from fricmb.integrate.compile.block import block_module, cell, load_block
-from fricmb.integrate.methods.run_setup import Collector  # noqa: F401  (defines the blocks)
+from fricmb.integrate.implicit import time_loop  # noqa: F401  (defines the blocks)
 
-BLOCKS = ("mark_rest", "find_open", "complete")
+BLOCKS = ("lightness", "add_stick", "share_load")
 
 
 def test_each_block_has_the_address_that_it_has_alone():
@@ -29,4 +29,4 @@ def test_a_second_process_fills_the_cache(tmp_path):
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "FRICMB_COMPILE_PROCESSES": "1"}
     arguments = [f"{block_module(name)}:{name}" for name in BLOCKS[:1]]
     subprocess.run([sys.executable, "-c", parallel_compile._COMMAND, *arguments], env=environment, check=True)
-    assert list(tmp_path.rglob("*mark_rest*.nbc"))
+    assert list(tmp_path.rglob("*lightness*.nbc"))

@@ -11,8 +11,7 @@ import pytest
 import fricmb as fm
 from fricmb import models
 from fricmb.integrate.collocation.one_contact.trajectory import SingleRun
-from fricmb.integrate.implicit import step_trajectory
-from fricmb.integrate.output.row_trajectory import RowTrajectory
+from fricmb.integrate.implicit.output import step_trajectory
 
 TIMES = np.linspace(0.0, 30.0, 61)
 METHODS = ("auto", "radau", "bdf", "taylor")
@@ -22,17 +21,11 @@ METHODS = ("auto", "radau", "bdf", "taylor")
 def integrated(monkeypatch):
     """How often energies were integrated."""
     calls = []
-    within, energies = RowTrajectory._fill, SingleRun._energies
+    energies = SingleRun._energies
 
     def single(self, *arguments):
         calls.append("single")
         return energies(self, *arguments)
-
-    def rows(self, *arguments):
-        asked = arguments[-2] or arguments[-1].size
-        if asked and not np.isin(arguments[2], self.t).all():  # what stands in a row costs nothing
-            calls.append("rows")
-        return within(self, *arguments)
 
     def steps(*arguments):
         calls.append("steps")
@@ -41,7 +34,6 @@ def integrated(monkeypatch):
     powers = step_trajectory.integrate_powers
     monkeypatch.setattr(step_trajectory, "integrate_powers", steps)
     monkeypatch.setattr(SingleRun, "_energies", single)
-    monkeypatch.setattr(RowTrajectory, "_fill", rows)
     return calls
 
 

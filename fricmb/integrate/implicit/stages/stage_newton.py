@@ -211,7 +211,7 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, made: 
             if not try_next(mech, st.steep, st.g, iteration):
                 unsolved, last = np.inf, np.inf
                 continue
-            if missed_by_laws(mech, k, st.steep, y.mode, st.F, st.z, st.N) > MISSED * accuracy:
+            if missed_by_laws(mech, k, st.steep, y.mode, st.V, st.F, st.z, st.N, MISSED * accuracy) > 1.0:
                 last = change
                 continue
         if not alone:

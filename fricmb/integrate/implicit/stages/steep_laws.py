@@ -261,9 +261,29 @@ def try_next(mech: Mech, steep: Steep, g: Floats2, iteration: int) -> bool:
     return free
 
 
+#: Relative round-off of a slip velocity beside the velocities that it is the difference of.
+ROUND_OFF = 4e-16
+
+
 @kernel
-def missed_by_laws(mech: Mech, k: Moving, steep: Steep, mode: Codes, F: Floats2, z: Floats2, N: Floats2) -> float:
-    """Largest miss of a force from what its law says at ``tried``, over the largest force of that row in the step."""
+def grain_of_slip(steep: Steep, at: int, V: Floats, g: float) -> float:
+    """Round-off of the slip velocity g of row ``at``: of velocities, and of what is prescribed."""
+    size, moved = 0.0, 0.0
+    for i in range(V.shape[0]):
+        part = steep.slip[at, i] * V[i]
+        size += abs(part)
+        moved += part
+    return ROUND_OFF * (size + abs(g - moved))
+
+
+@kernel
+def missed_by_laws(
+    mech: Mech, k: Moving, steep: Steep, mode: Codes, V: Floats2, F: Floats2, z: Floats2, N: Floats2, part: float
+) -> float:
+    """Largest miss of a force from what its law says at ``tried``, over what is allowed.
+
+    That is a ``part`` of the largest force of that row in the step, and what the round-off of slip makes of a force.
+    """
     port, worst = mech.port, 0.0
     for p in range(steep.port.shape[0]):
         c = steep.port[p]
@@ -275,5 +295,9 @@ def missed_by_laws(mech: Mech, k: Moving, steep: Steep, mode: Codes, F: Floats2,
                 size = 1e-290
                 for i in range(F.shape[0]):
                     size = max(size, abs(F[i, first + a]))
-                worst = max(worst, abs(F[j, first + a] - k.share * k.s.out[a]) / size)
+                allowed = part * size
+                for b in range(d):
+                    slope = abs(k.s.out[d + nz + a * (d + 1 + nz) + b])
+                    allowed += slope * grain_of_slip(steep, steep.start[p] + b, V[j], steep.tried[j, first + b])
+                worst = max(worst, abs(F[j, first + a] - k.share * k.s.out[a]) / allowed)
     return float(worst)

@@ -1,4 +1,4 @@
-"""Collocation on any scene with a linear structure: references, closed forms, stiff modes, ports of every kind."""
+"""The general method on scenes with a linear structure: certified references, closed forms, stiff modes."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 import fricmb as fm
-from fricmb.integrate.collocation import Collocation
+from tests.integrate.test_many_rows import Another
 
-_spec = importlib.util.spec_from_file_location("reference", Path(__file__).parents[2] / "reference.py")
+_spec = importlib.util.spec_from_file_location("reference", Path(__file__).parents[1] / "reference.py")
 reference = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(reference)
 
-GENERAL = Collocation(general=True)
+GENERAL = "radau"
 
 
 def belt(*, stribeck, damping):
@@ -72,7 +72,7 @@ def compare(ref, sol):
     return worst, float(np.abs(times - ref["t_event"]).max())
 
 
-@pytest.mark.parametrize("rtol", [1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-11])
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8, 1e-10])
 @pytest.mark.parametrize("name", SCENES)
 def test_tolerance_means_error(name, rtol):
     ref = reference.load(name)
@@ -99,17 +99,6 @@ def test_twenty_blocks_within_the_growth_of_errors():
     error, late = compare(ref, sol)
     assert error <= 1e-7
     assert late <= 1e-6 * ref["growth"].max()
-
-
-def test_accuracy_that_nobody_asked_for_is_not_computed():
-    # the brake is where directions turn; what is linear between transitions is exact at any tolerance
-    ratios = []
-    for name in ("p1_2", "p1_5", "p2_s", "p5_b"):
-        ref = reference.load(name)
-        for rtol in (1e-4, 1e-6, 1e-8, 1e-10):
-            kw = {"t_end": float(ref["t"][-1]), "rtol": rtol, "t_eval": ref["t"], "method": GENERAL}
-            ratios.append(compare(ref, fm.simulate(SCENES[name](), **kw))[0] / rtol)
-    assert np.exp(np.mean(np.log(ratios))) > 0.01
 
 
 # stiff modes ----------------------------------------------------------------------------------------------------------
@@ -187,23 +176,6 @@ def test_steps_do_not_follow_a_fast_mode_that_is_damped_out(ratio):
     assert np.diff(slips) == pytest.approx(period, rel=2.0 / ratio)
 
 
-@pytest.mark.parametrize("nodes", [4, 6, 8, 9])
-def test_stick_stays_stable_with_modes_on_both_sides_of_exact_weights(nodes):
-    # w h from 0.5 to 500 at the longest step: no force of a stuck contact may grow
-    rng = np.random.default_rng(nodes)
-    speeds = [0.0 if i == 3 else float(rng.normal(scale=1e-3)) for i in range(8)]
-    bodies = [fm.Body(f"b{i}", mass=1.0, velocity={"x": speed}) for i, speed in enumerate(speeds)]
-    springs = [fm.Spring("g", bodies[0], axis="x", stiffness=1.0)]
-    springs += [fm.Spring(f"s{i}", bodies[i], bodies[i + 1], axis="x", stiffness=10.0 ** (0.7 * i)) for i in range(7)]
-    law = fm.laws.Coulomb(mu_s=1.0)
-    scene = fm.Scene("row", [*bodies, *springs, fm.Contact("c", bodies[3], law=law, normal_force=1.0)])
-    sol = fm.simulate(scene, t_end=50.0, rtol=1e-4, method=Collocation(general=True, nodes=nodes))
-    assert sol.mode("c")[-1] == 0
-    energy = sol.energy.kinetic + sol.energy.potential
-    assert energy.max() <= energy[0] * (1 + 1e-9) + 1e-12
-    assert np.abs(sol.force("c")).max() < 1.0
-
-
 # ports of every kind --------------------------------------------------------------------------------------------------
 
 
@@ -245,12 +217,12 @@ def bristles():
 
 
 @pytest.mark.parametrize("make", [two_in_the_plane, cubic, loaded_in_the_plane, bristles])
-def test_agrees_with_plain_radau_and_keeps_energy(make):
+def test_agrees_with_another_formula_and_keeps_energy(make):
     t = np.linspace(0.0, 20.0, 101)
     scene = make()
-    true = fm.simulate(scene, t_end=20.0, rtol=1e-11, t_eval=t, method="radau")
+    true = fm.simulate(scene, t_end=20.0, rtol=1e-11, t_eval=t, method=Another())
     for rtol in (1e-4, 1e-7, 1e-9):
-        sol = fm.simulate(scene, t_end=20.0, rtol=rtol, t_eval=t, method="collocation")
+        sol = fm.simulate(scene, t_end=20.0, rtol=rtol, t_eval=t, method=GENERAL)
         size = np.abs(true.q).max(axis=1)[:, None], np.abs(true.v).max(axis=1)[:, None]
         error = max((np.abs(sol.q - true.q) / size[0]).max(), (np.abs(sol.v - true.v) / size[1]).max())
         assert error < 100.0 * rtol
@@ -269,18 +241,9 @@ def test_one_contact_has_the_same_run_both_ways():
     np.testing.assert_allclose(any_number.q, one.q, atol=1e-7)
 
 
-def test_a_structure_without_contacts_is_exact():
-    mass = fm.Body("m", mass=1.0, position={"x": 1.0})
-    parts = [fm.Spring("k", mass, axis="x", stiffness=4.0), fm.Damper("d", mass, axis="x", damping=0.2)]
-    sol = fm.simulate(fm.Scene("free", [mass, *parts]), t_end=50.0, rtol=1e-6, method="collocation")
-    w = math.sqrt(4.0 - 0.01)
-    true = np.exp(-0.1 * sol.t) * (np.cos(w * sol.t) + 0.1 / w * np.sin(w * sol.t))
-    assert sol["m.x"] == pytest.approx(true, abs=1e-12)
-
-
 def test_what_it_refuses_it_says():
     held = fm.Body("held", mass=1.0, axes="xy")
     law = fm.laws.Coulomb(mu_s=0.5)
-    pinched = fm.Scene("pinched", [held, *(fm.Contact(f"pad{i}", held, law=law, normal_force=1.0) for i in range(2))])
-    with pytest.raises(fm.SceneError, match="redundant"):
-        fm.simulate(pinched, t_end=0.1, method="collocation")
+    two = fm.Scene("two", [held, *(fm.Contact(f"pad{i}", held, law=law, normal_force=1.0) for i in range(2))])
+    with pytest.raises(fm.SceneError, match="takes one contact"):
+        fm.simulate(two, t_end=0.1, method="collocation")
