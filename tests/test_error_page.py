@@ -53,7 +53,7 @@ def raised(path):
 
 def reasons():
     """Why a run stopped: the tables of the integrators, and what the mechanisms' returns."""
-    from fricmb.integrate.implicit import failure_text
+    from fricmb.integrate.implicit.output import failure_text
     from fricmb.integrate.implicit.impacts.impact import Impacts
     from fricmb.integrate.run.outcomes import FAILURES
 

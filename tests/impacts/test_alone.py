@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fricmb as fm
-from fricmb.integrate.implicit import impact
+from fricmb.integrate.implicit.impacts import impact
 
 
 def disc(law):

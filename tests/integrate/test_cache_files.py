@@ -306,20 +306,20 @@ def test_processes_that_compile_take_nothing_from_the_working_folder(trap):
 
     answers = []
     with Crew(1) as crew:
-        crew.work_off(["block find_open"], lambda task, answer: answers.append(answer))
+        crew.work_off(["block lightness"], lambda task, answer: answers.append(answer))
     assert len(answers) == 1
     assert not trap.exists()
 
 
 def test_the_helper_that_compiles_takes_nothing_from_the_working_folder(trap, monkeypatch):
     from fricmb.integrate.compile import parallel_compile
-    from fricmb.integrate.contact.mode_decision import find_open
+    from fricmb.integrate.implicit.equations.slip_rows import lightness
 
-    assert find_open  # a block, known by its name once its module is there
+    assert lightness  # a block, known by its name once its module is there
     monkeypatch.delenv("FRICMB_COMPILE_PROCESSES", raising=False)
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     monkeypatch.setattr(parallel_compile, "FEWEST", 1)
-    helper = parallel_compile._start_helper(("find_open",))
+    helper = parallel_compile._start_helper(("lightness",))
     assert helper is not None
     assert helper.wait(120) == 0
     assert not trap.exists()

@@ -10,7 +10,7 @@ import sympy
 from scipy.integrate import solve_ivp
 
 import fricmb as fm
-from fricmb.integrate.implicit import dense_rows
+from fricmb.integrate.implicit.scene import dense_rows
 
 CONTACTS, MODES = 14, 24
 STIFFNESS, PRELOAD, SPEED = 40.0, 1.0, 0.05

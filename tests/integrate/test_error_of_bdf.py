@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fricmb as fm
-from fricmb.integrate.implicit import bdf_history
+from fricmb.integrate.implicit.bdf import bdf_history
 from fricmb.integrate.implicit.bdf.bdf_stability import guard_of
 
 

@@ -221,13 +221,13 @@ def test_blocks_are_called_by_name_also_those_that_are_defined_later():
 
 
 def test_a_name_is_that_of_one_block():
-    def complete(x: Floats) -> None:
+    def react(x: Floats) -> None:
         """A block of the package has this name."""
 
-    import fricmb.integrate.model.accelerations  # noqa: F401  (where it is)
+    import fricmb.integrate.implicit.equations.accelerations  # noqa: F401  (where it is)
 
-    with pytest.raises(NameError, match=r"'complete' is defined in .*accelerations and in"):
-        block(complete)
+    with pytest.raises(NameError, match=r"'react' is defined in .*accelerations and in"):
+        block(react)
 
 
 def test_a_block_that_is_not_loaded_says_so_and_does_nothing_else():

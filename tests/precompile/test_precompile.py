@@ -18,16 +18,16 @@ from fricmb.integrate.compile.layout import argument_types
 from fricmb.precompile import _compile, _crew, _tasks, compile_all
 from fricmb.precompile._crew import Crew, Shares
 
-TASKS = ["block find_open", "block mark_rest", "entry fricmb.integrate.model.table_values:_each"]
+TASKS = ["block lightness", "block share_load", "entry fricmb.integrate.model.table_values:_each"]
 SHIPPED = """
 import sys
 from pathlib import Path
 from fricmb.integrate.compile import cache_files
 cache_files._SHIPPED = Path(sys.argv[1])
-import fricmb.integrate.methods.run_setup
+import fricmb.integrate.implicit.time_loop
 from fricmb.integrate.compile.block import load_block, was_compiled
-load_block("find_open")
-print(was_compiled("find_open"))
+load_block("lightness")
+print(was_compiled("lightness"))
 """
 
 
@@ -94,7 +94,7 @@ def test_what_is_made_is_copied_reported_and_found(few):
     assert {total for _, _, total in seen} == {4}
     there = {f"{path.parent.name}/{path.name}" for path in (few / "made").rglob("*") if path.is_file()}
     assert there == set(files)
-    assert {name.partition("-")[0] for name in files} >= {"kernels/find_open", "kernels/mark_rest", "kernels/_each"}
+    assert {name.partition("-")[0] for name in files} >= {"kernels/lightness", "kernels/share_load", "kernels/_each"}
     assert any(name.startswith("templates/") for name in files)
     empty = {**os.environ, "FRICMB_CACHE_DIR": str(few / "other")}
     command = [sys.executable, "-c", SHIPPED]
@@ -125,7 +125,7 @@ def test_a_copy_is_made_where_the_cache_cannot_be_written(few, monkeypatch):
     files = compile_all(processes=1, into=few / "made")
     assert os.environ["FRICMB_CACHE_DIR"] == str(few / "file")
     assert {f"{path.parent.name}/{path.name}" for path in (few / "made").rglob("*") if path.is_file()} == set(files)
-    assert {name.partition("-")[0] for name in files} >= {"kernels/find_open", "kernels/mark_rest", "kernels/_each"}
+    assert {name.partition("-")[0] for name in files} >= {"kernels/lightness", "kernels/share_load", "kernels/_each"}
 
 
 def test_a_process_that_dies_is_named_by_its_task(capfd):
@@ -138,13 +138,13 @@ def test_a_process_that_died_before_its_first_task_is_told():
     with Crew(2) as crew:
         crew._processes[1].kill()
         crew._processes[1].wait()
-        with pytest.raises(fm.FricmbError, match="block mark_rest"):
-            crew.work_off(["block find_open", "block mark_rest"], lambda task, answer: None)
+        with pytest.raises(fm.FricmbError, match="block share_load"):
+            crew.work_off(["block lightness", "block share_load"], lambda task, answer: None)
 
 
 def test_workers_end_by_themselves():
     with Crew(1) as crew:
-        crew.work_off(["block find_open"], lambda task, answer: None)
+        crew.work_off(["block lightness"], lambda task, answer: None)
     assert [process.returncode for process in crew._processes] == [0]
 
 
@@ -191,7 +191,7 @@ from fricmb.precompile import _tasks
 for name in _tasks.kernels():
     print(name)
 print(_tasks.runs())
-for task in ("block find_open", "entry fricmb.sensitivity._eliminate:small_maps"):
+for task in ("block lightness", "entry fricmb.sensitivity._eliminate:small_maps"):
     _tasks.do(task)
 """
 

@@ -8,7 +8,7 @@ import pytest
 import fricmb as fm
 from fricmb.integrate.array_cache import forget_results
 from fricmb.integrate.collocation.one_contact import workspace as one_contact
-from fricmb.integrate.implicit import pattern
+from fricmb.integrate.implicit.scene import pattern
 from fricmb.integrate.model import structure
 from fricmb.integrate.run import workspace
 from fricmb.plan import _same, make_plan
