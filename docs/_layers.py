@@ -29,11 +29,11 @@ ENGINE = (
     ("run",),
     ("signals",),
     ("model",),
-    ("output",),
-    ("step",),
-    ("contact",),
+    ("formulas",),
+    ("suits_taylor",),
+    ("collocation", "implicit", "taylor"),
     ("methods",),
-    ("collocation", "taylor", "constrained"),
+    ("guard", "guarded_taylor", "named"),
     ("select",),
 )
 #: What everybody imports: no lines.
