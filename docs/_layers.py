@@ -10,7 +10,8 @@ import fricmb
 
 # Floors from below, as the page names them; a package that is new stands out until it is given a place.
 PACKAGE = (
-    ("calls", "errors", "values", "integrate", "reduction", "fe", "measure", "solution", "dae", "facade", "version"),
+    ("calls", "errors", "values", "integrate", "reduction", "fe", "measure", "solution", "dae", "facade", "files",
+     "signal", "version"),
     ("laws", "normal"),
     ("scene", "space"),
     ("equations",),
@@ -20,6 +21,7 @@ PACKAGE = (
     ("simulate", "sweep"),
     ("analysis", "audit", "sensitivity", "fit"),
     ("plot",),
+    ("squeal",),
     ("models", "testing", "bench", "precompile"),
     ("cli",),
 )
