@@ -10,8 +10,10 @@ import fricmb
 
 # Floors from below, as the page names them; a package that is new stands out until it is given a place.
 PACKAGE = (
-    ("calls", "errors", "values", "integrate", "reduction", "fe", "measure", "solution", "dae", "facade", "files",
-     "signal", "version"),
+    (
+        "calls", "errors", "values", "fe", "integrate", "dae", "reduction", "files", "measure", "signal", "solution",
+        "facade", "version",
+    ),
     ("laws", "normal"),
     ("scene", "space"),
     ("equations",),
