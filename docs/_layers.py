@@ -10,7 +10,10 @@ import fricmb
 
 # Floors from below, as the page names them; a package that is new stands out until it is given a place.
 PACKAGE = (
-    ("calls", "errors", "values", "integrate", "reduction", "fe", "measure", "solution", "dae", "facade", "version"),
+    (
+        "calls", "errors", "values", "fe", "integrate", "dae", "reduction", "files", "measure", "signal", "solution",
+        "facade", "version",
+    ),
     ("laws", "normal"),
     ("scene", "space"),
     ("equations",),
@@ -20,6 +23,7 @@ PACKAGE = (
     ("simulate", "sweep"),
     ("analysis", "audit", "sensitivity", "fit"),
     ("plot",),
+    ("squeal",),
     ("models", "testing", "bench", "precompile"),
     ("cli",),
 )
@@ -29,11 +33,11 @@ ENGINE = (
     ("run",),
     ("signals",),
     ("model",),
-    ("output",),
-    ("step",),
-    ("contact",),
+    ("formulas",),
+    ("suits_taylor",),
+    ("collocation", "implicit", "taylor"),
     ("methods",),
-    ("collocation", "taylor", "constrained"),
+    ("guard", "guarded_taylor", "named"),
     ("select",),
 )
 #: What everybody imports: no lines.
