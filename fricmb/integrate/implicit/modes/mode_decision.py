@@ -24,6 +24,7 @@ from fricmb.integrate.implicit.modes.mode_trial import (
     still,
     wrong,
 )
+from fricmb.integrate.implicit.modes.release_in_plane import release_in_plane
 from fricmb.integrate.implicit.modes.release_in_turn import release_in_turn
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
@@ -41,7 +42,7 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
     wrong way, or is held by others, sticks again.  What LETS_GO in ``part`` does not stick.  One that comes to rest is
     released before those that have rested: more friction at rest than in slip lets several combinations hold,
     and what has stuck lets go only where it has to.  Where that does not settle, every combination is tried; many ports
-    let go one after the other (``release_in_turn``).
+    let go one after the other (``release_in_turn``, ``release_in_plane``).
     """
     n_c = y.mode.shape[0]
     count, anew = 0, True
@@ -81,6 +82,10 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
     if many and find_wrong(mech, k, w, y, part, forced) < 0:
         return FOUND
     code = enumerate_modes(mech, k, w, y, part, count, False)
+    if code != FOUND and release_in_plane(mech, k, w, y, part, forced) and react(mech, k, w, y, False):
+        if find_wrong(mech, k, w, y, part, forced) < 0:
+            set_out(mech, y)
+            return FOUND
     return enumerate_modes(mech, k, w, y, part, count, True) if code == NO_SOLUTION else code
 
 

@@ -211,7 +211,7 @@ def begin_tries(mech: Mech, steep: Steep, start: Floats, g: Floats2) -> None:
         c = steep.port[p]
         for a in range(mech.port.row[c], mech.port.row[c + 1]):
             for j in range(g.shape[0]):
-                near = NEAR * abs(start[a]) <= g[j, a] * np.sign(start[a]) <= abs(start[a]) / NEAR
+                near = NEAR * abs(start[a]) < g[j, a] * np.sign(start[a]) < abs(start[a]) / NEAR
                 steep.tried[j, a] = g[j, a] if near else start[a]
 
 
