@@ -62,6 +62,10 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
                 release(mech, k, y, c)
             elif freely or y.mode[c] == STICK or plane(mech, c):
                 hold(mech, y, c, anew)
+    if shares_in_plane(mech, y, part) and release_in_plane(mech, k, w, y, part, forced) and react(mech, k, w, y, False):
+        if find_wrong(mech, k, w, y, part, forced) < 0:
+            set_out(mech, y)
+            return FOUND
     if not freely:
         start_group(mech, k, w, y)
     for _ in range(4 * count + 4):
@@ -87,6 +91,15 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
             set_out(mech, y)
             return FOUND
     return enumerate_modes(mech, k, w, y, part, count, True) if code == NO_SOLUTION else code
+
+
+@kernel
+def shares_in_plane(mech: Mech, y: State, part: Codes) -> bool:
+    """Whether redundant contacts at rest in the plane share what they hold."""
+    found = False
+    for c in range(part.shape[0]):
+        found = found or (at_rest(mech, y, c, part) and plane(mech, c) and mech.port.soft[c] > 0.0)
+    return found
 
 
 @kernel
