@@ -53,8 +53,8 @@ def raised(path):
 
 def reasons():
     """Why a run stopped: the tables of the integrators, and what the mechanisms' returns."""
-    from fricmb.integrate.implicit.output import failure_text
     from fricmb.integrate.implicit.impacts.impact import Impacts
+    from fricmb.integrate.implicit.output import failure_text
     from fricmb.integrate.run.outcomes import FAILURES
 
     for table in (FAILURES, _collocation._FAILURES, _taylor.FAILURES):

@@ -21,7 +21,7 @@ def two_blocks(law):
 
 
 @pytest.mark.parametrize("law", [fm.laws.Coulomb(mu_s=0.5, mu_k=0.3), fm.laws.Stribeck(mu_s=0.5, mu_k=0.3, v_s=0.05)])
-@pytest.mark.parametrize("method", ["auto", "collocation", "radau", "bdf"])
+@pytest.mark.parametrize("method", ["auto", "radau", "bdf"])
 @pytest.mark.parametrize("rtol", [1e-2, 1e-5, 1e-8])
 def test_friction_never_drives_between_steps(law, method, rtol):
     sol = fm.simulate(two_blocks(law), t_end=8.0, rtol=rtol, method=method).at(np.linspace(0.0, 8.0, 4001))

@@ -16,7 +16,7 @@ _spec = importlib.util.spec_from_file_location("reference", Path(__file__).paren
 reference = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(reference)
 
-METHODS = pytest.mark.parametrize("method", ["bdf", "radau", "collocation"])
+METHODS = pytest.mark.parametrize("method", ["bdf", "radau"])
 TURN = (math.cos(0.7), math.sin(0.7))
 
 

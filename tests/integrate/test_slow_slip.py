@@ -53,7 +53,7 @@ def dips():
     return fm.Scene("s", [body, belt, *parts]), grid, from_corner_to_corner(0.001, 10.0, 0.3, 0.8, grid)
 
 
-@pytest.mark.parametrize("method", ["radau", "bdf", "collocation"])
+@pytest.mark.parametrize("method", ["radau", "bdf"])
 @pytest.mark.parametrize("rtol", [1e-7, 1e-9])
 def test_a_short_dip_below_the_corner_of_a_law_is_seen(dips, method, rtol):
     scene, grid, (q, v) = dips
@@ -61,7 +61,7 @@ def test_a_short_dip_below_the_corner_of_a_law_is_seen(dips, method, rtol):
     assert largest_error(solution, q, v) < 5 * rtol
 
 
-@pytest.mark.parametrize("method", ["radau", "bdf", "collocation"])
+@pytest.mark.parametrize("method", ["radau", "bdf"])
 def test_the_peak_of_a_law_behind_a_reversal_is_seen(method):
     # slip passes v_s within 1e-4 of a period; a step over it loses the impulse of the peak at each of ten reversals
     grid = np.linspace(0.0, 4.0, 101)

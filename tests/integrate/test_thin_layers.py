@@ -32,7 +32,7 @@ def slip_of_one(v_s, exponent, times):
     return run.y[1]
 
 
-@pytest.mark.parametrize("method", ["auto", "radau", "bdf", "collocation"])
+@pytest.mark.parametrize("method", ["auto", "radau", "bdf"])
 @pytest.mark.parametrize(("v_s", "exponent"), [(1e-4, 2.0), (1e-5, 2.0), (1e-4, 3.0)])
 @pytest.mark.parametrize("rtol", [1e-6, 1e-9])
 def test_one_block_waits(v_s, exponent, rtol, method):
@@ -42,7 +42,7 @@ def test_one_block_waits(v_s, exponent, rtol, method):
     np.testing.assert_allclose(BELT - sol.v[0], slip_of_one(v_s, exponent, times), atol=10.0 * rtol * BELT, rtol=1e-3)
 
 
-@pytest.mark.parametrize("method", ["radau", "bdf", "collocation", "taylor"])
+@pytest.mark.parametrize("method", ["radau", "bdf", "taylor"])
 def test_two_blocks_that_reach_their_limits_together(method):
     """Slip 5 ms after the break-away was 6.5e-3 by three methods; it is 5.1e-6."""
     law = fm.laws.Stribeck(mu_s=2.3, mu_k=1.0, v_s=1e-4, exponent=3.0)

@@ -40,7 +40,7 @@ def _parts(k, c, mechanism):
 
 
 @pytest.mark.parametrize(("k", "c"), [(200.0, 0.5), (200.0, 5.0), (2e4, 5.0)])
-@pytest.mark.parametrize(("method", "mechanism"), [("collocation", False), ("radau", False), ("bdf", True)])
+@pytest.mark.parametrize(("method", "mechanism"), [(False), ("radau", False), ("bdf", True)])
 def test_a_damped_contact_that_opens_loses_what_the_motion_has_lost(k, c, method, mechanism):
     times = np.linspace(0.0, T_END, 601)
     scene = fm.Scene("bouncing block", _parts(k, c, mechanism))

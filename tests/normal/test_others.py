@@ -115,7 +115,7 @@ def test_a_bouncing_block_comes_to_rest_along_the_ground(kind):
     assert np.abs(sol.energy.residual).max() < 1e-7
 
 
-@pytest.mark.parametrize("method", ["radau", "bdf", "collocation"])
+@pytest.mark.parametrize("method", ["radau", "bdf"])
 @pytest.mark.parametrize("t_end", [0.5, 5.0, 20.0])
 def test_a_block_bounces_on_for_ever(t_end, method):
     """Touches and lift-offs in closed form: flights of 2 v/g, and (2/w) (pi - atan(v w/g)) on the ground."""
@@ -155,14 +155,14 @@ LOADS_THAT_GO = {
          "aside": 1.023343315168908, "preload": 0.1195005658785288, "position": 0.08611772388886596,
          "velocity": -0.5958310843548427, "belt": 0.5403000210386928, "frequency": 4.31082532561575,
          "normal": fm.normal.Hertz, "law": FALLING},
-        [("collocation", 1e-3), ("collocation", 1e-5), ("bdf", 1e-4), ("radau", 1e-4)], 17,
+        [("radau", 1e-3), ("bdf", 1e-5), ("bdf", 1e-4), ("radau", 1e-4)], 17,
     ),
     "spring": (
         {"mass": 0.22975564067543952, "stiffness": 29455.202843127525, "tie": 1.5657062392129069,
          "aside": 1.0827263669084366, "preload": 0.34138367214595244, "position": 0.7507089136405813,
          "velocity": -0.507896110775552, "belt": 0.1850399047763806, "frequency": 2.009739783578,
          "normal": fm.normal.Spring, "law": FALLING},
-        [("bdf", 1e-4), ("radau", 1e-6), ("collocation", 1e-10)], 47,
+        [("bdf", 1e-4), ("radau", 1e-6), ("radau", 1e-10)], 47,
     ),
 }  # fmt: skip
 
@@ -206,7 +206,7 @@ def test_hertz_with_damping_lets_go_what_is_torn_off():
     assert [event.kind for event in sol.events] == ["open"]
 
 
-@pytest.mark.parametrize("method", ["collocation", "radau"])
+@pytest.mark.parametrize("method", ["radau"])
 def test_a_block_that_is_thrown_off_loses_nothing_without_dampers(method):
     """Steps of collocation that end at a lift-off counted powers beyond it: up to a quarter of what was exchanged."""
     block = fm.Body("b", mass=1.0, axes="xy", velocity={"x": 1.0, "y": 2.0})

@@ -31,7 +31,7 @@ def crossings(level, t_end):
     return np.array([x / 2.0 for x in every if x / 2.0 < t_end])
 
 
-@pytest.mark.parametrize("method", ["auto", "radau", "bdf", "taylor", "collocation"])
+@pytest.mark.parametrize("method", ["auto", "radau", "bdf", "taylor"])
 def test_passes_of_a_motion_a_speed_and_a_clock(method):
     events = {
         "half": fm.coordinate("mass.x") - 0.5,

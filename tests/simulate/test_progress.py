@@ -11,7 +11,7 @@ from fricmb._simulate import _progress
 from tests.ticking import ticking
 
 
-@pytest.mark.parametrize("method", ["bdf", "radau", "collocation"])
+@pytest.mark.parametrize("method", ["bdf", "radau"])
 def test_kernels_tell_how_far_they_are(method, monkeypatch):
     """Also before their space for rows is full, and the run is the same."""
     scene, told = fm.models.stick_slip_chain(n=4), []

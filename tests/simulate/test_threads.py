@@ -19,8 +19,8 @@ M, L = fm.models, fm.laws
 STRIBECK = L.Stribeck(mu_s=0.6, mu_k=0.4, v_s=0.1)
 SCENES = {
     "brake": (M.brake4dof(case=2), "k1x.stiffness", 60.0, ("auto", "radau", "bdf")),
-    "steep": (M.brake4dof(case=2, law=STRIBECK), "lining.law.mu_k", 20.0, ("auto", "collocation")),
-    "chain": (M.stick_slip_chain(6), "coupling1.stiffness", 10.0, ("taylor", "collocation")),
+    "steep": (M.brake4dof(case=2, law=STRIBECK), "lining.law.mu_k", 20.0, ("auto", "radau")),
+    "chain": (M.stick_slip_chain(6), "coupling1.stiffness", 10.0, ("taylor", "radau")),
     "plane": (M.puck_on_belt(), "puck.mass", 4.0, ("auto", "radau")),
     "stack": (M.block_stack(), "block2.mass", 4.0, ("auto", "bdf")),
     "crank": (M.slider_crank(friction=L.Coulomb(mu_s=0.2)), "rod.mass", 2.0, ("radau", "bdf")),

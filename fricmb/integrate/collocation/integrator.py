@@ -34,6 +34,7 @@ from fricmb.integrate.collocation.one_contact.trajectory import SingleRun
 from fricmb.integrate.collocation.one_contact.workspace import borrowed, goes_back, lengthened, may_grow, within
 from fricmb.integrate.collocation.structure_blocks import NoBlocks
 from fricmb.integrate.integrator import Integrator, Tolerance
+from fricmb.integrate.model.problem_structs import softness
 from fricmb.integrate.problem import SLIP, STICK, Floats, Problem, Start
 from fricmb.integrate.run.chunks import counters
 from fricmb.integrate.run.stop import ended, in_slices
@@ -85,6 +86,8 @@ class Collocation(Integrator):
                 "collocation takes one contact under constant friction, a constant normal force and loads that are"
                 " linear in time; 'radau', 'bdf' and 'auto' take any scene"
             )
+        if softness(problem) > 0.0:
+            return "collocation needs a contact whose force in stick is determined; here its directions are redundant"
         try:
             structure(problem)
         except NoBlocks as error:
