@@ -32,7 +32,7 @@ def row(q, v):
 @pytest.mark.parametrize(("q", "v"), [(-0.475, -0.158), (0.2827, 0.7053), (0.5, 0.5), (-0.9, 0.3), (0.1, -0.8)])
 def test_a_landing_elsewhere_sets_nothing_in_motion(q, v):
     """The held body is left with the round-off of a landing, which was then followed as if it moved."""
-    sols = {rtol: fm.simulate(row(q, v), t_end=200.0, rtol=rtol, method="collocation") for rtol in TOLERANCES[:5]}
+    sols = {rtol: fm.simulate(row(q, v), t_end=200.0, rtol=rtol, method="radau") for rtol in TOLERANCES[:5]}
     fine = sols[1e-8].stats.n_steps
     for rtol, sol in sols.items():
         assert sol.stats.n_steps + sol.stats.n_rejected < 1.2 * fine, rtol

@@ -60,7 +60,7 @@ class Relaxing(fm.FrictionLaw):
 
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-11])
-@pytest.mark.parametrize("method", [m for m in GENERAL if m != "collocation"])
+@pytest.mark.parametrize("method", GENERAL)
 def test_states_between_steps_are_as_good_as_the_motion(method: str, rtol: float) -> None:
     """A block on a belt held by bristles that creep: (x, v, z, 1) follows a matrix exponential."""
     k, belt, load, tau = 2.0, 0.5, 10.0, 0.7
@@ -80,7 +80,7 @@ def test_states_between_steps_are_as_good_as_the_motion(method: str, rtol: float
 
 
 @pytest.mark.parametrize("blocks", [1, 2])
-@pytest.mark.parametrize("method", [m for m in GENERAL if m != "collocation"])
+@pytest.mark.parametrize("method", GENERAL)
 def test_belt_that_jumps_past_the_block(method: str, blocks: int) -> None:
     """The force before the jump belongs to the slip before it: else friction under a law of speed seems to drive."""
     mu, c, v0 = 0.2, 0.5, 0.5
@@ -104,7 +104,7 @@ def test_belt_that_jumps_past_the_block(method: str, blocks: int) -> None:
 
 
 @pytest.mark.parametrize("rtol", [1e-4, 1e-5])
-@pytest.mark.parametrize("method", [m for m in GENERAL if m != "collocation"])
+@pytest.mark.parametrize("method", GENERAL)
 def test_friction_of_a_contact_that_has_just_closed_opposes_slip(method: str, rtol: float) -> None:
     """Its load begins at 0, where no force tells a direction and polynomials through those of the step pass 0."""
     block = fm.Body("b", mass=0.4, axes="xy", position={"x": 0.3}, velocity={"x": 0.5})

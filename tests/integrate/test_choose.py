@@ -136,7 +136,7 @@ def test_redundant_contacts_go_to_the_general_method():
 
 
 def test_a_run_that_stops_is_done_by_the_general_method_and_says_so(monkeypatch):
-    scene = plate(40, 2)
+    scene = plate(40, 1)
     good = fm.simulate(scene, t_end=5.0, method="radau")
     whole = Collocation.integrate
 
@@ -170,7 +170,7 @@ TABLE = fm.laws.Tabulated(speed=[0.0, 0.5, 2.0], mu=[1.2, 1.0, 1.0])
 @pytest.mark.parametrize(
     ("modes", "law", "method"),
     [
-        (20, COULOMB, "taylor"), (40, COULOMB), (500, COULOMB),
+        (20, COULOMB, "taylor"), (40, COULOMB, "taylor"), (500, COULOMB, "taylor"),
         (120, STRIBECK, "taylor"), (120, TABLE, "radau"), (600, TABLE, "radau"),
     ],
 )  # fmt: skip
@@ -179,7 +179,7 @@ def test_many_modes_under_few_contacts(modes, law, method):
     assert sol.stats.method == method
 
 
-@pytest.mark.parametrize(("stiffness", "method"), [(1e10), (1e12, "radau")])
+@pytest.mark.parametrize(("stiffness", "method"), [(1e10, "radau"), (1e12, "radau")])
 def test_modes_whose_eigenproblem_leaves_no_digits_are_left_to_steps(stiffness, method):
     scene = stiff_pair(stiffness)
     sol = fm.simulate(scene, t_end=50.0, rtol=1e-6)

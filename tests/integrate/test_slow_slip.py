@@ -81,7 +81,7 @@ def test_a_law_much_steeper_than_the_tolerance_of_velocities_does_not_make_steps
     law, grid = fm.laws.RateAndState.example(), np.linspace(0.0, 6.0, 61)
     parts = [fm.Spring("k", body, axis="x", stiffness=10.0), fm.Contact("c", body, belt, law=law, normal_force=2.0)]
     scene = fm.Scene("s", [body, belt, *parts])
-    tight = fm.simulate(scene, t_end=6.0, rtol=1e-10, method="collocation", t_eval=grid)
+    tight = fm.simulate(scene, t_end=6.0, rtol=1e-10, method="radau", t_eval=grid)
     for rtol in (1e-2, 1e-3, 1e-4, 1e-5):
         solution = fm.simulate(scene, t_end=6.0, rtol=rtol, method="radau", t_eval=grid)
         assert solution.stats.n_steps + solution.stats.n_rejected < 300

@@ -40,7 +40,7 @@ def _parts(k, c, mechanism):
 
 
 @pytest.mark.parametrize(("k", "c"), [(200.0, 0.5), (200.0, 5.0), (2e4, 5.0)])
-@pytest.mark.parametrize(("method", "mechanism"), [(False), ("radau", False), ("bdf", True)])
+@pytest.mark.parametrize(("method", "mechanism"), [("radau", False), ("bdf", False), ("bdf", True)])
 def test_a_damped_contact_that_opens_loses_what_the_motion_has_lost(k, c, method, mechanism):
     times = np.linspace(0.0, T_END, 601)
     scene = fm.Scene("bouncing block", _parts(k, c, mechanism))
@@ -55,6 +55,6 @@ def test_a_damped_contact_that_opens_loses_what_the_motion_has_lost(k, c, method
 
 def test_a_contact_without_damping_loses_nothing():
     scene = fm.Scene("bouncing block", _parts(200.0, 0.0, False))
-    for method in ("collocation", "radau"):
+    for method in ("radau", "bdf"):
         sol = fm.simulate(scene, t_end=T_END, rtol=1e-6, method=method)
         assert np.abs(sol.energy.damping_loss).max() < 1e-10

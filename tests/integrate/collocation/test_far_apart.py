@@ -43,7 +43,7 @@ def exactly(t: float) -> np.ndarray:
 
 
 def test_what_a_light_body_feels_of_a_heavy_one_is_no_round_off():
-    sol = fm.simulate(shaken(), t_end=0.2, rtol=1e-10, method="collocation")
+    sol = fm.simulate(shaken(), t_end=0.2, rtol=1e-11, method="radau")
     assert not sol.events
     for t in (0.05, 0.1, 0.2):
         np.testing.assert_allclose(sol(t)[:2], exactly(t), rtol=1e-10)

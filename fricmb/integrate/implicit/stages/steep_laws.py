@@ -208,11 +208,23 @@ NEAR = 0.1
 def begin_tries(mech: Mech, steep: Steep, start: Floats, g: Floats2) -> None:
     """Let laws be asked at the predicted slip velocities g first, where these are not far from those at the start."""
     for p in range(steep.port.shape[0]):
-        c = steep.port[p]
-        for a in range(mech.port.row[c], mech.port.row[c + 1]):
-            for j in range(g.shape[0]):
-                near = NEAR * abs(start[a]) < g[j, a] * np.sign(start[a]) < abs(start[a]) / NEAR
+        first, last = mech.port.row[steep.port[p]], mech.port.row[steep.port[p] + 1]
+        for j in range(g.shape[0]):
+            along, begun, size = compare(start[first:last], g[j, first:last])
+            near = along > 0.0 and NEAR * begun < size < begun / NEAR
+            for a in range(first, last):
                 steep.tried[j, a] = g[j, a] if near else start[a]
+
+
+@kernel
+def compare(a: Floats, b: Floats) -> tuple[float, float, float]:
+    """The product of two slip velocities, and their sizes."""
+    along = one = other = 0.0
+    for i in range(a.shape[0]):
+        along += a[i] * b[i]
+        one += a[i] * a[i]
+        other += b[i] * b[i]
+    return along, np.sqrt(one), np.sqrt(other)
 
 
 @kernel
@@ -250,14 +262,13 @@ def try_next(mech: Mech, steep: Steep, g: Floats2, iteration: int) -> bool:
     """
     free = True
     for p in range(steep.port.shape[0]):
-        c = steep.port[p]
-        for a in range(mech.port.row[c], mech.port.row[c + 1]):
-            for j in range(g.shape[0]):
-                here, to = steep.tried[j, a], g[j, a]
-                if iteration >= FREE and here * to < 0.0 and abs(to) > TURNED * abs(here):
-                    to = -TURNED * here
-                    free = False
-                steep.tried[j, a] = to
+        first, last = mech.port.row[steep.port[p]], mech.port.row[steep.port[p] + 1]
+        for j in range(g.shape[0]):
+            along, here, to = compare(steep.tried[j, first:last], g[j, first:last])
+            turns = iteration >= FREE and along < 0.0 and to > TURNED * here
+            for a in range(first, last):
+                steep.tried[j, a] = g[j, a] * (TURNED * here / to if turns else 1.0)
+            free = free and not turns
     return free
 
 
