@@ -26,13 +26,6 @@ class Tolerance:
     max_step: float = math.inf
 
 
-def odd_stages(name: str, problem: Problem, stages: int | None) -> str | None:
-    """Why a number of stages does not do for a mechanism, or None."""
-    if problem.mechanism is None or stages is None or stages % 2 == 1:
-        return None
-    return f"{name} takes bodies that turn and joints with an odd number of stages, got stages={stages}"
-
-
 class Integrator(ABC):
     """Base of all integrators.  Subclass, give the facts as class attributes, implement :meth:`integrate`.
 

@@ -1,6 +1,6 @@
-"""Steps of all unknowns in a band: bodies that turn, joints as constraints, and contacts in numbers."""
+"""The implicit driver: steps of all unknowns in a band, with joints and without."""
 
-from fricmb.integrate.constrained.many_rows import has_many_rows
-from fricmb.integrate.constrained.run import run_mechanism, stages_for
+from fricmb.integrate.constrained.number_of_stages import stages_for
+from fricmb.integrate.constrained.run import run_mechanism
 
-__all__ = ["has_many_rows", "run_mechanism", "stages_for"]
+__all__ = ["run_mechanism", "stages_for"]

@@ -14,7 +14,7 @@ from fricmb.integrate.constrained.between_stages import (
     off_near_ends,
     weigh_ports,
 )
-from fricmb.integrate.constrained.element_bends import bend_within
+from fricmb.integrate.constrained.element_bends import bend_within, go_over_bend
 from fricmb.integrate.constrained.event_functions import has_come_to_rest, violated
 from fricmb.integrate.constrained.event_location import last_unique, locate_trigger
 from fricmb.integrate.constrained.force_jumps import jump_error
@@ -55,6 +55,7 @@ from fricmb.integrate.run.outcomes import (
     ACCEPTED,
     CHANGED,
     DONE,
+    FAIL_CHATTER,
     FAIL_CREEP,
     FAIL_MARGIN,
     FAIL_SINGULAR,
@@ -170,8 +171,32 @@ def may_keep(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) 
     return same
 
 
+#: Bends gone over in a row, and the part of the span below which that has brought the run on by nothing.
+PILED_UP, NOTHING = 300, 1e-12
+
+
+@kernel
+def behind_bend(
+    mech: Mech, k: Moving, w: Instant, y: State, before: State, c: Control, out: Watch, rec: Record, part: Codes
+) -> int:
+    """Behind a bend, whose forces may jump by more than what rests can hold: modes are decided anew."""
+    if c.bends == 0:
+        c.first_bend = y.t
+    c.bends += 1
+    if c.bends > PILED_UP:
+        c.bends = 0
+        if y.t - c.first_bend < NOTHING * (c.span[1] - c.span[0]):
+            return FAIL_CHATTER
+    c.knot, c.growth = -np.inf, np.inf
+    if rec.used[0] > 0:
+        rec.after[rec.used[0] - 1] = 1
+    code = change_modes(mech, k, w, y, before, c, out, rec, part, -1)
+    return CHANGED if code == DONE else code
+
+
 #: Part of a step that is nothing beside it.
 IN_VAIN = 1e-6
+
 #: Steps whose equations were not solved, and their part of those that were accepted, from which on a run creeps.
 VAIN, VAIN_PART = 200, 0.25
 
@@ -199,6 +224,8 @@ def radau_step(
     else:
         h = rung(y, min(h, 0.5 * left) if h > 0.5 * left else h)
     if is_round_off(c, h, t):
+        if mech.bends.address.shape[0] > 0 and go_over_bend(mech, k, y):
+            return behind_bend(mech, k, w, y, before, c, out, rec, part)
         margins(mech, k, w, y, out, False)
         return FAIL_SINGULAR if has_come_near(out, SUSPECTED) else FAIL_STEP
     kept = may_keep(mech, k, y, st, c, h)
@@ -235,6 +262,10 @@ def radau_step(
     factor = step_factor(error, order, ONE_STEP_SAFETY)
     if knot < 1.0 and (error <= 1.0 or knot < factor):
         c.knot = t + knot * h
+        if not c.knot > t:
+            # a bend so near that no step ends before it: asked for again it would be as near
+            c.knot = -np.inf
+            return behind_bend(mech, k, w, y, before, c, out, rec, part) if go_over_bend(mech, k, y) else FAIL_STEP
         return reject(c, h)
     if error > 1.0:
         return reject(c, h * max(0.2, factor))
@@ -286,6 +317,8 @@ def radau_step(
         c.knot = -np.inf
         c.last_h = 0.0
         c.growth = np.inf
+        if mech.bends.address.shape[0] > 0 and go_over_bend(mech, k, y):
+            return behind_bend(mech, k, w, y, before, c, out, rec, part)
         return CHANGED
     if worst >= 0:
         c.knot = -np.inf

@@ -10,8 +10,10 @@ from fricmb.integrate.constrained.redundancy import singular_joints
 from fricmb.integrate.constrained.structure import mechanism_of
 from fricmb.integrate.problem import SLIP, STICK, Codes, Floats, Problem
 from fricmb.integrate.run.outcomes import (
+    FAIL_CHATTER,
     FAIL_CREEP,
     FAIL_HIT,
+    FAIL_INFINITE,
     FAIL_LOST,
     FAIL_MARGIN,
     FAIL_MODES,
@@ -19,6 +21,7 @@ from fricmb.integrate.run.outcomes import (
     FAIL_SEVERAL,
     FAIL_SINGULAR,
     FAIL_STEP,
+    FAILURES,
 )
 
 #: A margin of uniqueness that is as good as gone.
@@ -27,6 +30,8 @@ NEAR = 0.02
 
 def failure_text(code: int, problem: Problem, k: Any, y: Any, out: Any) -> str:
     """The reason for a code of failure."""
+    if code in (FAIL_CHATTER, FAIL_INFINITE):
+        return FAILURES[code]
     if code == FAIL_CREEP:
         return "the step size fell again and again, as equations were not solved: a law is far steeper here than there"
     if code in (FAIL_MODES, FAIL_MARGIN) and k.unsolved > 0:

@@ -38,7 +38,7 @@ class Control(Layout):
     ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next one be, or what it
     was to be where it was cut; ``knot`` when the next step has to end, since a law or an element bends then (not
     ahead: whenever it likes); ``setting_out`` step that was right where something last let go, to be known anew
-    from a step that ``sets_out``.
+    from a step that ``sets_out``; ``bends`` gone over in a row, the first of them at ``first_bend``.
     """
 
     rtol: float
@@ -67,6 +67,8 @@ class Control(Layout):
     knot: float
     setting_out: float
     sets_out: int
+    bends: int
+    first_bend: float
 
 
 def control_of(problem: Problem, st: Stages) -> Control:
@@ -76,7 +78,7 @@ def control_of(problem: Problem, st: Stages) -> Control:
         0.0, 0.0, np.zeros(n), np.zeros(n), np.zeros(problem.n_z), np.zeros(n), 1.0, 0.0,
         np.zeros((s + 1, size)), np.zeros(8, np.int64), np.zeros(2), 0.0, 0.0, np.zeros(stops), np.zeros(n),
         0.0, np.zeros((s, problem.n_c + 2)), np.zeros(s), np.zeros((s, s + 1)),
-        np.zeros(n), np.zeros(problem.n_z), np.inf, 0.0, -np.inf, np.inf, 0,
+        np.zeros(n), np.zeros(problem.n_z), np.inf, 0.0, -np.inf, np.inf, 0, 0, 0.0,
     )  # fmt: skip
 
 

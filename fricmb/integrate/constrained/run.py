@@ -16,10 +16,11 @@ from fricmb.integrate.constrained.failure_text import failure_text, held_notes
 from fricmb.integrate.constrained.impact import Impacts
 from fricmb.integrate.constrained.impulses import impulse_notes
 from fricmb.integrate.constrained.least_change import names_of_rows
+from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import masses, mech_of
 from fricmb.integrate.constrained.recorder import record_of, width
 from fricmb.integrate.constrained.state import State
-from fricmb.integrate.constrained.step_trajectory import StepTrajectory, complete_at, nodes_of
+from fricmb.integrate.constrained.step_trajectory import StepTrajectory, complete_at
 from fricmb.integrate.constrained.structure import mechanism_of, with_open
 from fricmb.integrate.constrained.time_loop import begin, drive
 from fricmb.integrate.constrained.workspace import RunWorkspace, run_workspace
@@ -36,6 +37,7 @@ from fricmb.integrate.signals.largest_value import largest_forces
 from fricmb.integrate.signals.longest_steps import LongestSteps, shortest_of, steps_of_run
 from fricmb.integrate.step.stages import STIFF
 from fricmb.integrate.step.step_control import FREE, SAMPLED, first_step
+from fricmb.integrate.step.tableau import Tableau
 
 #: Steps that a kernel fills before they are taken out: so many, or so many bytes.
 CHUNK, CHUNK_BYTES = 1024, 1e6
@@ -46,29 +48,20 @@ PART = 0.05
 FURTHER = 10.0
 
 
-def stages_for(problem: Problem, rtol: float) -> int:
-    """Stages of the formula for a tolerance; their nodes carry the dense output of BDF's steps, too, of degree up to 5.
-
-    Three would be faster by a quarter at 1e-2, as fast at 1e-4, and err by up to 30 ``rtol`` where five err by 0.1.
-    Without joints, where factors are kept from step to step, seven pay earlier.
-    """
-    return 5 if rtol > (1e-7 if mechanism_of(problem).n_rows else 1e-5) else 7
-
-
 def run_mechanism(
     problem: Problem,
     start: Start,
     t_end: float,
     tolerance: Tolerance,
-    stages: int,
+    tab: Tableau,
     progress: Callable[[float], None] | None,
     memory: float | None = None,
     *,
     multistep: bool = False,
 ) -> StepTrajectory:
-    """Radau IIA of ``stages`` (an odd number) on the index-reduced system; see ``Integrator.integrate``.
+    """Steps by a one-step formula, on the index-reduced system; see ``Integrator.integrate``.
 
-    ``multistep``: BDF between transitions, the same Radau formula around them.
+    ``multistep``: BDF between transitions, the formula around them.
     """
     whole = problem
     if mechanism_of(problem).joints.hands_over.any():
@@ -78,10 +71,12 @@ def run_mechanism(
     if problem.contacts.knots.size:
         load_blocks("knot_within", "off_near_ends", "passes_bend")
     if problem.bends.table.address.size:
-        load_blocks("bend_within")
+        load_blocks("bend_within", "go_over_bend")
+    stages = len(tab.c)
     capacity = int(np.clip(CHUNK_BYTES / (8 * (stages + 1) * width(problem)), 16, CHUNK))
-    with run_workspace(problem, stages) as workspace:
-        small, reach = _set_up(workspace, problem, start, t_end, tolerance)
+    with run_workspace(problem, tab) as workspace:
+        with np.errstate(over="ignore", invalid="ignore"):  # what has no value at the start is named below
+            small, reach = _set_up(workspace, problem, start, t_end, tolerance)
         mech, record, part = mech_of(problem), record_of(problem, stages, capacity), np.zeros(problem.n_c, np.int8)
         k, w, y, end, before, st, out, control = workspace
         past: tuple[Differences, Formula] = no_differences(), no_formula(y, st)
@@ -96,6 +91,8 @@ def run_mechanism(
         chunks, impacts = Chunks(record, "values", "span", "force", "mode", "opened", "after"), None
         go_on: Callable[[], int] = stepping
         code = begin(mech, k, w, y, control, out, part, start.mode is not None, small, reach)
+        if not _has_values(k, y):
+            code = FAIL_INFINITE
         if mechanism_of(problem).has_impacts:
             impacts = Impacts(problem, mech, workspace, record, part)
             code = impacts.jump(code) if impacts.may_jump(code) else code
@@ -122,7 +119,7 @@ def run_mechanism(
         transitions = impacts.log.transitions(transitions, span[:, 0], opened, last.t)
     return StepTrajectory(
         whole, span, values, force, mode, opened, after, transitions, counters(counts, notes), last, failure,
-        nodes_of(stages), tolerance.rtol,
+        np.concatenate([[0.0], tab.c]), tolerance.rtol,
     )  # fmt: skip
 
 
@@ -140,7 +137,7 @@ def _set_up(
     if tolerance.atol_v is not None:
         c.floor_v[:] = tolerance.atol_v / tolerance.rtol
     c.stops[:] = mech_of(problem).breakpoints
-    c.knot, c.setting_out, c.sets_out = -np.inf, np.inf, 0
+    c.knot, c.setting_out, c.sets_out, c.bends = -np.inf, np.inf, 0, 0
     workspace.out.opened = (m.joints.dropped == 2).sum()
     first, weight = _first_speeds(problem, start, t_end), np.sqrt(c.mass)
     trifle = (weight * c.v).max(initial=0.0) <= 1e-12 * (weight * first).max(initial=0.0)
@@ -150,6 +147,15 @@ def _set_up(
     workspace.out.top_slip = _slip_of_drivers(problem, start, t_end)
     slip = max(float(_slip_by(problem, start, y.v, first).max(initial=0.0)), float(workspace.out.top_slip))
     return 1e-12 * slip, FURTHER * float(np.linalg.norm(weight * first))
+
+
+#: What is no number to go on with: functions of time are asked 1e-300 behind a start at 0, where 1/t is 1e300.
+INFINITE = 1e290
+
+
+def _has_values(k: Moving, y: State) -> bool:
+    """Whether all that acts at the start has a value: no step from there ends, however short."""
+    return all(np.all(np.abs(x) < INFINITE) for x in (y.a, y.F, y.N, y.g, y.zd, k.s.X))
 
 
 def _longest_step(problem: Problem, span: float) -> float:

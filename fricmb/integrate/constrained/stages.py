@@ -1,11 +1,11 @@
-"""The stages of a Radau IIA step on the velocity level (index 2): simplified Newton on the transformed system.
+"""The stages of a one-step formula on the velocity level (index 2): simplified Newton on the transformed system.
 
 With velocities V_i, multipliers L_i and friction forces F_i at the stages, Q_i = q + h sum_j A_ij V_j:
 
     M V'_i = f(t_i, Q_i, V_i, L_i, F_i),   d phi/dt (t_i, Q_i, V_i) = 0,   friction(Q_i, V_i, L_i, F_i) = 0.
 
 The position constraint drifts by the error of a step and is restored after it (Hairer and Wanner, Solving ODEs II,
-VII.2).  A = T diag(lam) T^-1 splits the Newton system into one real and some complex systems of one stage's size.
+VII.2).  A = T diag(lam) T^-1 splits the Newton system into real and complex systems of one stage's size.
 """
 
 from __future__ import annotations
@@ -36,6 +36,7 @@ from fricmb.integrate.problem import (
     Complexes3,
     Floats,
     Floats2,
+    Floats3,
     Pivots,
     Problem,
 )
@@ -91,8 +92,8 @@ def series_of(problem: Problem, stages: int) -> Series:
 class Stages(Layout):
     """Values at the stages (s, .), residuals and changes (s, size), factored matrices and pivots.
 
-    Factors are kept for several steps, ``lengths`` (slots,), 0 where there are none: ``real`` (slots, .), ``pairs``
-    (slots, l, .); those in use are of ``slot``.
+    Factors are kept for several steps, ``lengths`` (slots,), 0 where there are none: ``real`` (slots, ., .),
+    ``pairs`` (slots, l, .); those in use are of ``slot``.
 
     ``Ainv`` (s, s) inverse of the tableau; ``scale`` (n,) what counts as 1 in velocities; ``found`` the rate of
     convergence; ``turns`` for contacts in two directions; ``steep`` for smooth laws; ``felt`` what forces of
@@ -111,7 +112,7 @@ class Stages(Layout):
     g: Floats2
     R: Floats2
     L: Layers
-    real: Floats2
+    real: Floats3
     pairs: Complexes3
     pivots: Pivots
     lengths: Floats
@@ -136,17 +137,17 @@ SLOTS, SLOT_BYTES = 16, 2e6
 
 
 def stages_of(problem: Problem, tab: Tableau) -> Stages:
-    """Arrays for the stages of a tableau with an odd number of them."""
+    """Arrays for the stages of a tableau."""
     m, order, s = mechanism_of(problem), mech_of(problem).order, len(tab.c)
     size, band = len(order.place), length_of(order.sizes)
-    nc, rows, nz, count = problem.n_c, problem.m, problem.n_z, len(tab.lam)
+    nc, rows, nz, count, real = problem.n_c, problem.m, problem.n_z, len(tab.lam), len(tab.lam)
     slots = 1
     if problem.mechanism is None and s > 1:
         slots = int(np.clip(SLOT_BYTES / max(16.0 * (count + 1) * band, 1.0), 1, SLOTS))
     return Stages(
         tab, np.ascontiguousarray(np.linalg.inv(tab.A)), np.zeros((s, m.n)), np.zeros((s, m.n)),
         np.zeros((s, m.n_rows)), np.zeros((s, rows)), np.zeros((s, nz)), np.zeros((s, nc)), np.zeros((s, rows)),
-        np.zeros((s, size)), Layers(np.zeros(band), np.zeros(band), np.zeros(band)), np.zeros((slots, band)),
+        np.zeros((s, size)), Layers(np.zeros(band), np.zeros(band), np.zeros(band)), np.zeros((slots, real, band)),
         np.zeros((slots, count, band), complex), np.zeros(slots * count * size, np.int32), np.zeros(slots), 0,
         np.zeros(size),
         np.zeros((count, size), complex), np.zeros(size, complex), np.zeros((s, nz)), np.zeros(size), np.ones(m.n), 0.0,
@@ -221,7 +222,7 @@ def factor_stages(mech: Mech, st: Stages, h: float) -> bool:
         first = (slot * tab.lam.shape[0] + i) * size
         pivots = st.pivots[first : first + size]
         if tab.lam[i].imag == 0.0:
-            up, down, real = 1.0 / (h * tab.lam[i].real), h * tab.lam[i].real, st.real[slot]
+            up, down, real = 1.0 / (h * tab.lam[i].real), h * tab.lam[i].real, st.real[slot, i]
             for j in range(real.shape[0]):
                 real[j] = up * L.A0[j] + L.A1[j] + down * L.A2[j]
             if not factor_band(real, pivots, order.sizes):
@@ -292,7 +293,7 @@ def solve_system(mech: Mech, st: Stages, i: int, alone: bool) -> None:
     if st.tab.lam[i].imag == 0.0:
         for a in range(place.shape[0]):
             st.x[place[a]] = w[a].real
-        solve_band(st.real[slot], pivots, mech.order.sizes, st.x, alone)
+        solve_band(st.real[slot, i], pivots, mech.order.sizes, st.x, alone)
         for a in range(place.shape[0]):
             w[a] = st.x[place[a]]
         return

@@ -14,7 +14,6 @@ from fricmb.integrate.constrained.workspace import evaluation
 from fricmb.integrate.model.damped_normals import damped_normals
 from fricmb.integrate.output.step_energies import integrate_between, integrate_powers, scale_of
 from fricmb.integrate.problem import LAW_SMOOTH, Codes, Floats, Ints, Problem, Start
-from fricmb.integrate.step.tableau import radau
 from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
 
 
@@ -275,8 +274,3 @@ def lagrange_weights(nodes: Floats, x: Floats) -> Floats:
         weight[j] *= behind / apart[j].prod()
         behind *= x - nodes[j]
     return weight.T
-
-
-def nodes_of(stages: int) -> Floats:
-    """0 and the nodes of the formula."""
-    return np.concatenate([[0.0], radau(stages).c])

@@ -19,7 +19,7 @@ from fricmb.integrate.model.forces import longest_call
 from fricmb.integrate.once_per import once_per
 from fricmb.integrate.problem import Problem
 from fricmb.integrate.run.workspace import lent
-from fricmb.integrate.step.tableau import radau
+from fricmb.integrate.step.tableau import Tableau
 
 
 class Evaluation(NamedTuple):
@@ -49,17 +49,17 @@ def evaluation(problem: Problem) -> AbstractContextManager[Evaluation]:
     return lent(key, lambda: Evaluation(moving_of(problem), instant_of(problem), state_of(problem)))
 
 
-def run_workspace(problem: Problem, stages: int) -> AbstractContextManager[RunWorkspace]:
-    """Workspace for a run of so many stages; states are empty."""
+def run_workspace(problem: Problem, tab: Tableau) -> AbstractContextManager[RunWorkspace]:
+    """Workspace for a run by a formula; states are empty."""
     facts = once_per(problem, "facts of stages", lambda: facts_of(problem))
-    return lent(("run of a mechanism", stages, _sizes(problem), facts), lambda: _made(problem, stages))
+    return lent(("run of a mechanism", tab.c.tobytes(), _sizes(problem), facts), lambda: _made(problem, tab))
 
 
-def _made(problem: Problem, stages: int) -> RunWorkspace:
+def _made(problem: Problem, tab: Tableau) -> RunWorkspace:
     y, end, before = (state_of(problem) for _ in range(3))
-    st = stages_of(problem, radau(stages))
+    st = stages_of(problem, tab)
     return RunWorkspace(
-        moving_of(problem), instant_of(problem), y, end, before, st, watch_of(problem, stages), control_of(problem, st)
+        moving_of(problem), instant_of(problem), y, end, before, st, watch_of(problem, len(tab.c)), control_of(problem, st)
     )
 
 

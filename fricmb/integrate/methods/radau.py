@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
-from fricmb.integrate.integrator import Tolerance, odd_stages
+from fricmb.integrate.integrator import Tolerance
 from fricmb.integrate.methods.one_step import OneStepMethod
 from fricmb.integrate.methods.run_setup import follows_series, stages_for
 from fricmb.integrate.model.problem_structs import softness
@@ -14,26 +14,6 @@ from fricmb.integrate.problem import Floats, Problem, Start
 from fricmb.integrate.run.stop import ended
 from fricmb.integrate.step.tableau import radau
 from fricmb.integrate.trajectory import Trajectory
-
-#: Rows of contacts (slip, normal forces that vary) below which steps of BDF are condensed to them.
-FEW = 16
-
-
-def in_a_band(problem: Problem, stages: int | None) -> bool:
-    """Whether ``radau`` and ``bdf`` solve steps for all unknowns in a band: with joints, and nearly all without.
-
-    Condensed to the contacts are steps of an even number of stages, and, with few contacts, those of scenes with
-    elements whose forces bend or jump: that what rests lets go at a jump is known to condensed steps alone.
-    """
-    if problem.mechanism is not None:
-        return True
-    if stages is not None and stages % 2 == 0:
-        return False
-    if not problem.bends.table.address.size:
-        return True
-    from fricmb.integrate.constrained import has_many_rows
-
-    return problem.m + problem.n_v >= FEW and has_many_rows(problem)
 
 
 def stopped_in_a_band(problem: Problem, run: Trajectory) -> bool:
@@ -81,8 +61,7 @@ class Radau(OneStepMethod):
 
     def refuses(self, problem: Problem) -> str | None:
         """Why this integrator cannot run the problem, or None."""
-        odd = odd_stages(self.name, problem, self.stages)
-        return odd or against_sharing(problem) or super().refuses(problem)
+        return against_sharing(problem) or super().refuses(problem)
 
     def nodes(self, problem: Problem, rtol: float) -> Sequence[float]:
         """Right Radau points."""
@@ -102,15 +81,16 @@ class Radau(OneStepMethod):
     ) -> Trajectory:
         """See :class:`Integrator`."""
         # where measured values come thick, three stages do, and condensed steps of so few cost half
-        if in_a_band(problem, self.stages) and not (self.stages is None and follows_series(problem, tolerance.rtol)):
-            from fricmb.integrate import constrained
+        if self.stages is None and follows_series(problem, tolerance.rtol):
+            return super().integrate(
+                problem, start, t_end, tolerance=tolerance, t_eval=t_eval, progress=progress, memory=memory
+            )
+        # slow to load
+        from fricmb.integrate import constrained
 
-            count = self.stages or constrained.stages_for(problem, tolerance.rtol)
-            run = constrained.run_mechanism(problem, start, t_end, tolerance, count, progress, memory)
-            if not stopped_in_a_band(problem, run):
-                return run
-            options: dict[str, Any] = {"progress": progress, "memory": memory}
-            return condensed_after(run, super().integrate(problem, start, t_end, tolerance=tolerance, **options))
-        return super().integrate(
-            problem, start, t_end, tolerance=tolerance, t_eval=t_eval, progress=progress, memory=memory
-        )
+        formula = radau(constrained.stages_for(problem, tolerance.rtol, self.stages))
+        run = constrained.run_mechanism(problem, start, t_end, tolerance, formula, progress, memory)
+        if not stopped_in_a_band(problem, run):
+            return run
+        options: dict[str, Any] = {"progress": progress, "memory": memory}
+        return condensed_after(run, super().integrate(problem, start, t_end, tolerance=tolerance, **options))
