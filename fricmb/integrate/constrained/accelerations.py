@@ -216,8 +216,8 @@ def react(mech: Mech, k: Moving, w: Instant, y: State, factored: bool) -> bool:
 def lost_in_dampers(mech: Mech, k: Moving, N: Floats) -> float:
     """Power that normal forces of dense rows take at X: those without damping none, being linear while they press."""
     dense, port, X = mech.dense, mech.port, k.s.X
-    n, n_u, m, lost = k.ddy.shape[0], k.s.ddu.shape[0], N.shape[0], 0.0
-    for c in range(m):
+    n, n_u, m, lost = k.ddy.shape[0], k.s.ddu.shape[0], port.row[-1], 0.0
+    for c in range(N.shape[0]):
         if port.normal[c] == NORMAL_LAW and port.damped[c]:
             line, rate = dense.on[m + c], 0.0
             for i in range(n):

@@ -1,4 +1,4 @@
-"""Slip and loads of many contacts as dense rows, where all equations are linear while modes stay.
+"""Slip and loads of contacts as dense rows, where all but the directions of slip is linear while modes stay.
 
 Contacts of an elastic body feel all of its modes: each of their rows is full.  As templates of forms they cost a call
 and two lists of indices each; as columns of one matrix they cost what they multiply.
@@ -63,7 +63,7 @@ def add_forces(on: Floats2, force: Floats, f: Floats) -> None:
 _stamps = itertools.count(1)
 
 #: Rows of contacts from which on dense ones pay, and the part of them that is not 0; numbers in a matrix of them.
-FEW, FULL, MOST = 12, 0.5, 1e6
+FEW, FULL, MOST = 2, 0.5, 1e6
 
 
 def dense_rows(problem: Problem, m: Mechanism) -> DenseRows:
@@ -85,7 +85,7 @@ def _made(problem: Problem, m: Mechanism) -> DenseRows | None:
     contacts, n, n_u = problem.contacts, problem.n, problem.n_u
     if problem.mechanism is not None or problem.elements.table.address.size or problem.n_z:
         return None
-    if not FEW <= problem.m == problem.n_c or n * (problem.m + problem.n_c) > MOST:
+    if problem.m < FEW or n * (problem.m + problem.n_c) > MOST:
         return None
     if (contacts.law != LAW_CONSTANT).any() or (m.M.row != m.M.column).any() or m.least_mass.size:
         return None

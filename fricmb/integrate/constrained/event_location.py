@@ -72,10 +72,15 @@ def has_series(st: Stages) -> bool:
 def at_series(mech: Mech, k: Moving, end: State, st: Stages, out: Watch, j: int, h: float) -> float:
     """Trigger j of a port a time h behind the start of the series; the port's forces and slip go into ``end``."""
     se, c = st.series, j // 2
-    at, F, N, g = h / se.length, 0.0, 0.0, 0.0
+    at, N = h / se.length, 0.0
+    for a in range(mech.port.row[c], mech.port.row[c + 1]):
+        F, g = 0.0, 0.0
+        for i in range(se.terms - 1, -1, -1):
+            F, g = F * at + se.F[i, a], g * at + se.g[i, a]
+        end.F[a], end.g[a] = F, g
     for i in range(se.terms - 1, -1, -1):
-        F, N, g = F * at + se.F[i, c], N * at + se.N[i, c], g * at + se.g[i, c]
-    end.F[c], end.N[c], end.g[c] = F, N, g
+        N = N * at + se.N[i, c]
+    end.N[c] = N
     return port_trigger(mech, k, out, end.mode, end.n, end.F, end.N, end.g, j)
 
 

@@ -299,18 +299,22 @@ def dense_contact_forces(mech: Mech, k: Moving, F: Floats, N: Floats, g: Floats)
     put_path(dense.of, X[1 : 1 + n], k.rows[0])
     put_path(dense.of, X[1 + n : 1 + 2 * n], k.rows[1])
     for a in range(m):
-        slip, e, rate = k.rows[1, a] + dense.offset[a], k.rows[0, m + a], k.rows[1, m + a]
+        slip = k.rows[1, a] + dense.offset[a]
         for b in range(n_u):
-            u, du = X[1 + 2 * n + b], X[1 + 2 * n + n_u + b]
-            slip += dense.by_u[a, b] * du
-            e += dense.by_u[m + a, b] * u
-            rate += dense.by_u[m + a, b] * du
+            slip += dense.by_u[a, b] * X[1 + 2 * n + n_u + b]
+            k.fu[b] += F[a] * dense.by_u[a, b]
         g[a] = slip
-        N[a] = dense.offset[m + a] + dense.stiff[a] * e + dense.damp[a] * rate
-        push = max(N[a], 0.0) - port.N0[a] if port.normal[a] == NORMAL_LAW else 0.0
+        k.rows[0, a] = F[a]
+    for c in range(N.shape[0]):
+        e, rate = k.rows[0, m + c], k.rows[1, m + c]
         for b in range(n_u):
-            k.fu[b] += F[a] * dense.by_u[a, b] + push * dense.by_u[m + a, b]
-        k.rows[0, a], k.rows[0, m + a] = F[a], push
+            e += dense.by_u[m + c, b] * X[1 + 2 * n + b]
+            rate += dense.by_u[m + c, b] * X[1 + 2 * n + n_u + b]
+        N[c] = dense.offset[m + c] + dense.stiff[c] * e + dense.damp[c] * rate
+        push = max(N[c], 0.0) - port.N0[c] if port.normal[c] == NORMAL_LAW else 0.0
+        for b in range(n_u):
+            k.fu[b] += push * dense.by_u[m + c, b]
+        k.rows[0, m + c] = push
     add_forces(dense.on, k.rows[0], k.fy)
 
 

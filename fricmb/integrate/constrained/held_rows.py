@@ -13,7 +13,7 @@ from fricmb.integrate.constrained.loop_mobility import DEPENDENT
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.slip_accelerations import slip_accelerations
-from fricmb.integrate.constrained.slip_rows import carried, friction_coefficient, guided
+from fricmb.integrate.constrained.slip_rows import SETTING_OUT, carried, friction_coefficient, guided
 from fricmb.integrate.constrained.state import Held, State
 from fricmb.integrate.problem import SLIP, STICK, Codes
 
@@ -23,10 +23,11 @@ def list_held(mech: Mech, mode: Codes, held: Held) -> bool:
     """List the rows that stick; whether they are those whose factors are there."""
     same, count = held.stamp == mech.dense.stamp, 0
     for c in range(mode.shape[0]):
-        if mode[c] == STICK and not guided(mech, c, 0):
-            same = same and count < held.count and held.row[count] == c
-            held.row[count] = c
-            count += 1
+        for a in range(mech.port.row[c], mech.port.row[c + 1] if mode[c] == STICK else mech.port.row[c]):
+            if not guided(mech, c, a - mech.port.row[c]):
+                same = same and count < held.count and held.row[count] == a
+                held.row[count] = a
+                count += 1
     same = same and count == held.count
     held.count = count
     return bool(same)
@@ -90,16 +91,22 @@ def put_forces(mech: Mech, k: Moving, held: Held) -> None:
 def react_at_rows(mech: Mech, k: Moving, y: State, held: Held) -> bool:
     """Accelerations and friction forces of the modes at X; False where there are none, or some are nearly redundant.
 
-    Once by the mobility of what sticks, and once more for the round-off of that.
+    Once by the mobility of what sticks, and once more for the round-off of that.  Where a port sets out in a plane its
+    direction follows from its force, and equations are not linear: False, too.
     """
+    for c in range(y.mode.shape[0]):
+        if y.mode[c] == SETTING_OUT:
+            return False
     if not factor_held(mech, y.mode, held):
         return False
+    row = mech.port.row
     forces(mech, k, y.lam, y.F, y.N, y.g)
     for c in range(y.mode.shape[0]):
-        y.F[c] = 0.0
+        load, size = carried(mech, c, y.N[c]), 0.0
         if y.mode[c] == SLIP:
-            load = carried(mech, c, y.N[c])
-            y.F[c] = -y.n[c] * friction_coefficient(mech, k, c, 0.0, load)[0] * load
+            size = friction_coefficient(mech, k, c, 0.0, load)[0] * load
+        for a in range(row[c], row[c + 1]):
+            y.F[a] = -y.n[a] * size
     forces(mech, k, y.lam, y.F, y.N, y.g)
     for i in range(y.a.shape[0]):
         y.a[i] = mech.dense.inverse[i] * k.fy[i]

@@ -42,9 +42,12 @@ def mobility(mech: Mech, k: Moving, w: Instant, y: State, held: Codes, answers: 
     rows = port.row[held.shape[0]]
     D = np.zeros((rows, rows))
     if has_dense_rows(mech):
-        for a in range(rows):
-            for b in range(rows):
-                D[a, b] = mech.dense.mobility[a, b] if held[a] == STICK and held[b] == STICK else 0.0
+        for c in range(held.shape[0]):
+            for a in range(port.row[c], port.row[c + 1] if held[c] == STICK else port.row[c]):
+                D[a] = mech.dense.mobility[a]
+        for c in range(held.shape[0]):
+            for a in range(port.row[c], port.row[c + 1] if held[c] != STICK else port.row[c]):
+                D[:, a] = 0.0
         return D
     V = np.zeros((rows, n))
     if not instant_matrix(mech, k, w, y, NONE):

@@ -14,12 +14,12 @@ from fricmb.integrate.constrained.near_rest import choose_forms, prepare_steep, 
 from fricmb.integrate.constrained.problem_structs import Mech
 from fricmb.integrate.constrained.projection import project_positions, project_velocities
 from fricmb.integrate.constrained.series_step import solve_by_series
-from fricmb.integrate.constrained.slip_rows import aim, keep_held, lightness
+from fricmb.integrate.constrained.slip_rows import aim, keep_held, lightness, plane
 from fricmb.integrate.constrained.stage_newton import iterate_stages
 from fricmb.integrate.constrained.stages import Stages, bring_up_to_date, empty_slot, factor_stages, linearise, slot_for
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.model.law_values import smooth_force
-from fricmb.integrate.problem import STICK, Floats, Floats2, Ints, Problem
+from fricmb.integrate.problem import SLIP, STICK, Floats, Floats2, Ints, Problem
 from fricmb.integrate.step.slow_slip import line_at
 from fricmb.integrate.step.step_control import or_reached
 from fricmb.integrate.step.tableau import by_line, largest_in_step
@@ -225,6 +225,15 @@ def solve_stages(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: flo
     return used > 0
 
 
+@kernel
+def sign_slip(mech: Mech, k: Moving, y: State, c: Control) -> None:
+    """Let slip in several directions beyond its end have a negative speed, as that of a series has; see ``k.form``."""
+    for p in range(y.mode.shape[0]):
+        if y.mode[p] == SLIP and plane(mech, p) and k.form[p] == 0:
+            k.form[p] = 1
+            c.made = 0.0
+
+
 @block
 def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) -> bool:
     """As ``solve_stages``; where factors of another step do not get there, by its own.  By a series where that does."""
@@ -232,6 +241,7 @@ def try_step(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) 
         measure(mech, c, y, h, st.scale)
         if solve_by_series(mech, k, y, st, h, KAPPA * asked(c)):
             c.counts[2] += st.tab.c.shape[0]
+            sign_slip(mech, k, y, c)
             return True
     if solve_stages(mech, k, y, st, c, h):
         return True

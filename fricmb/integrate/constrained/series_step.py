@@ -5,7 +5,7 @@ With distances e and slip velocities g of the contacts, loads ``N = N0 + k e + c
 
     M q'' = f - K q - C q' + sum of the loads and the friction along their rows,
 
-each power of time follows from those before it: a few products with the dense rows and, once a step, factors of the
+where slip has several directions with ``F = -mu N u``, ``g = r u``, ``r^2 = g . g`` in place of n (:func:`turn`), each power of time follows from those before it: a few products with the dense rows and, once a step, factors of the
 mobility of what sticks.  Newton's method on the same stages factors matrices of all unknowns, and anew for every length
 of a step that is tried while a transition is located; one series serves all of them, as it is a function of time.
 
@@ -15,6 +15,8 @@ such steps are left to Newton.
 
 from __future__ import annotations
 
+import numpy as np
+
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.long_loops import long_loops
@@ -22,7 +24,7 @@ from fricmb.integrate.constrained.dense_rows import add_forces, put_path
 from fricmb.integrate.constrained.held_rows import factor_held, solve_held
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
-from fricmb.integrate.constrained.slip_rows import friction_coefficient
+from fricmb.integrate.constrained.slip_rows import friction_coefficient, plane
 from fricmb.integrate.constrained.stages import TERMS, Stages
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.model.forces import set_time
@@ -39,7 +41,7 @@ FINEST = 1e-17
 
 
 @kernel
-def is_known(y: State, st: Stages, h: float) -> bool:
+def is_known(mech: Mech, y: State, st: Stages, h: float) -> bool:
     """Whether the series that is there is that of y and reaches as far as h."""
     se = st.series
     if se.terms == 0 or not 0.0 < h <= se.length or se.begin != y.t:
@@ -49,15 +51,18 @@ def is_known(y: State, st: Stages, h: float) -> bool:
             return False
     same = True
     for c in range(y.mode.shape[0]):
-        same = same and se.along[c] == direction(y, c)
+        same = same and se.along[c] == direction(mech, y, c)
     return same
 
 
 @kernel
-def direction(y: State, c: int) -> float:
-    """The mode of contact c as a number: the direction of its slip, 0 where it sticks, 2 where it is open."""
+def direction(mech: Mech, y: State, c: int) -> float:
+    """The mode of contact c as a number: the direction of its slip, 0 where it sticks, 2 where it is open.
+
+    Slip in several directions has that of its velocity, and is 3.
+    """
     if y.mode[c] == SLIP:
-        return float(y.n[c])
+        return 3.0 if plane(mech, c) else float(y.n[mech.port.row[c]])
     return 0.0 if y.mode[c] == STICK else 2.0
 
 
@@ -113,26 +118,75 @@ def put_structure(mech: Mech, st: Stages, j: int, h: float) -> None:
 
 
 @kernel
-def put_contacts(mech: Mech, y: State, st: Stages, j: int, h: float) -> None:
-    """Term j of loads and slip velocities, and of the forces of what does not stick, added to ``series.f``."""
+def turn(mech: Mech, st: Stages, c: int, j: int) -> None:
+    """Term j of the size and the direction of the slip of contact c: r^2 = g . g, g = r u."""
+    se, first, last = st.series, mech.port.row[c], mech.port.row[c + 1]
+    square = 0.0
+    for a in range(first, last):
+        for i in range(j + 1):
+            square += se.g[i, a] * se.g[j - i, a]
+    if j == 0:
+        se.speed[0, c] = np.sqrt(square)
+    else:
+        for i in range(1, j):
+            square -= se.speed[i, c] * se.speed[j - i, c]
+        se.speed[j, c] = 0.5 * square / se.speed[0, c]
+    for a in range(first, last):
+        value = se.g[j, a]
+        for i in range(1, j + 1):
+            value -= se.speed[i, c] * se.unit[j - i, a]
+        se.unit[j, a] = value / se.speed[0, c]
+
+
+@kernel
+def put_loads(mech: Mech, y: State, st: Stages, j: int, h: float) -> None:
+    """Term j of loads, and what bodies feel of them into ``series.force``."""
     se, dense, port = st.series, mech.dense, mech.port
     m, n_u, up = y.F.shape[0], se.u.shape[1] // 2, (j + 1.0) / h
-    for a in range(m):
-        slip = up * se.path[j + 1, a]
-        e, rate = se.path[j, m + a], up * se.path[j + 1, m + a]
+    for c in range(y.mode.shape[0]):
+        e, rate = se.path[j, m + c], up * se.path[j + 1, m + c]
         for b in range(n_u if j < se.u.shape[0] else 0):
-            slip += dense.by_u[a, b] * se.u[j, n_u + b]
-            e += dense.by_u[m + a, b] * se.u[j, b]
-            rate += dense.by_u[m + a, b] * se.u[j, n_u + b]
-        load = dense.stiff[a] * e + dense.damp[a] * rate
+            e += dense.by_u[m + c, b] * se.u[j, b]
+            rate += dense.by_u[m + c, b] * se.u[j, n_u + b]
+        load = dense.stiff[c] * e + dense.damp[c] * rate
         if j == 0:
-            slip += dense.offset[a]
-            load += dense.offset[m + a]
-        se.g[j, a], se.N[j, a] = slip, load
-        se.F[j, a] = -y.n[a] * se.mu[a] * load if y.mode[a] == SLIP else 0.0
-        push = (0.0 if y.mode[a] == OPEN else load) - (port.N0[a] if j == 0 else 0.0)
-        se.force[a], se.force[m + a] = se.F[j, a], push if port.normal[a] == NORMAL_LAW else 0.0
+            load += dense.offset[m + c]
+        se.N[j, c] = load
+        push = (0.0 if y.mode[c] == OPEN else load) - (port.N0[c] if j == 0 else 0.0)
+        se.force[m + c] = push if port.normal[c] == NORMAL_LAW else 0.0
+
+
+@kernel
+def put_contacts(mech: Mech, y: State, st: Stages, j: int, h: float) -> bool:
+    """Term j of loads and slip velocities, and of the forces of what does not stick, added to ``series.f``.
+
+    False where slip in several directions is too slow to have one.
+    """
+    se, dense, row = st.series, mech.dense, mech.port.row
+    n_u, up = se.u.shape[1] // 2, (j + 1.0) / h
+    put_loads(mech, y, st, j, h)
+    for c in range(y.mode.shape[0]):
+        for a in range(row[c], row[c + 1]):
+            slip = up * se.path[j + 1, a] + (dense.offset[a] if j == 0 else 0.0)
+            for b in range(n_u if j < se.u.shape[0] else 0):
+                slip += dense.by_u[a, b] * se.u[j, n_u + b]
+            se.g[j, a], se.F[j, a] = slip, 0.0
+        turns = y.mode[c] == SLIP and plane(mech, c)
+        if turns:
+            turn(mech, st, c, j)
+            if not se.speed[0, c] > 0.0:
+                return False
+        follows = dense.stiff[c] != 0.0 or dense.damp[c] != 0.0
+        earlier = (j if follows else min(j, 1)) if turns else 0
+        for a in range(row[c], row[c + 1] if y.mode[c] == SLIP else row[c]):
+            size = se.N[j, c] * (se.unit[0, a] if turns else y.n[a])
+            for i in range(earlier):
+                size += se.N[i, c] * se.unit[j - i, a]
+            se.F[j, a] = -se.mu[c] * size
+        for a in range(row[c], row[c + 1]):
+            se.force[a] = se.F[j, a]
     add_forces(dense.on, se.force, se.f)
+    return True
 
 
 @kernel
@@ -157,13 +211,28 @@ def hold(mech: Mech, st: Stages, j: int, h: float) -> None:
     add_forces(dense.on, se.force, se.f)
 
 
+#: Part by which the last terms of directions of slip count beside those of velocities.
+TURNED = 1e-6
+
+
+@kernel
+def sharpest(mech: Mech, y: State, st: Stages, j: int) -> float:
+    """The largest of term j of directions of slip, by the part by which these count."""
+    most = 0.0
+    for c in range(y.mode.shape[0]):
+        if y.mode[c] == SLIP and plane(mech, c):
+            for a in range(mech.port.row[c], mech.port.row[c + 1]):
+                most = max(most, TURNED * abs(st.series.unit[j, a]))
+    return most
+
+
 @kernel
 def expand(mech: Mech, k: Moving, y: State, st: Stages, h: float, accuracy: float) -> bool:
     """The series from y for steps up to h; False where it does not converge to ``accuracy`` of what counts as 1."""
     se, dense = st.series, mech.dense
     se.terms, se.begin, se.length = 0, y.t, h
     for c in range(y.mode.shape[0]):
-        se.along[c] = direction(y, c)
+        se.along[c] = direction(mech, y, c)
         se.mu[c], _, _ = friction_coefficient(mech, k, c, 0.0, y.N[c])
     if not factor_held(mech, y.mode, se.held):
         return False
@@ -176,10 +245,11 @@ def expand(mech: Mech, k: Moving, y: State, st: Stages, h: float, accuracy: floa
     quiet = 0
     for j in range(TERMS):
         put_structure(mech, st, j, h)
-        put_contacts(mech, y, st, j, h)
+        if not put_contacts(mech, y, st, j, h):
+            return False
         if se.held.count > 0:
             hold(mech, st, j, h)
-        largest = 0.0
+        largest = sharpest(mech, y, st, j)
         for i in range(y.q.shape[0]):
             se.x[j + 2, i] = h * h / ((j + 1.0) * (j + 2.0)) * dense.inverse[i] * se.f[i]
             largest = max(largest, (j + 2.0) / h * abs(se.x[j + 2, i]) / st.scale[i])
@@ -229,7 +299,7 @@ def solve_by_series(mech: Mech, k: Moving, y: State, st: Stages, h: float, accur
 
     ``accuracy``: what is left out, of what counts as 1 in velocities.
     """
-    if not is_known(y, st, h) and not expand(mech, k, y, st, h, accuracy):
+    if not is_known(mech, y, st, h) and not expand(mech, k, y, st, h, accuracy):
         return False
     se, s = st.series, st.tab.c.shape[0]
     for i in range(s):

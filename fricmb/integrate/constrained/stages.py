@@ -48,8 +48,8 @@ class Series(Layout):
     """Terms of a Taylor series over ``length`` from ``begin`` on, ``terms`` of them (0: there is none), in t/length.
 
     ``bent`` 1 where signals are no straight lines.  ``x`` (., n) of positions, ``path`` (., r) of rows (see
-    ``dense_rows``), ``N``, ``F``, ``g`` of loads, friction and slip velocities; ``u`` (s+1, 2 n_u) of signals and their
-    rates, by values ``signal`` at 0, c.  ``along`` (n_c,) modes as numbers, ``mu`` coefficients; ``held`` what sticks;
+    ``dense_rows``), ``N``, ``F``, ``g`` of loads, friction and slip velocities, in a plane ``speed`` and ``unit`` of
+    their sizes and directions; ``u`` (s+1, 2 n_u) of signals and their rates, by values ``signal`` at 0, c.  ``along`` (n_c,) modes as numbers, ``mu`` coefficients; ``held`` what sticks;
     ``force`` (r,) along rows; ``f``, ``acc`` (n,) space.
     """
 
@@ -62,6 +62,8 @@ class Series(Layout):
     N: Floats2
     F: Floats2
     g: Floats2
+    speed: Floats2
+    unit: Floats2
     u: Floats2
     signal: Floats2
     along: Floats
@@ -79,13 +81,13 @@ TERMS = 40
 def series_of(problem: Problem, stages: int) -> Series:
     """Space for the series of a problem with dense rows; of any other one none."""
     some = has_dense_rows(problem, mechanism_of(problem))
-    n, rows, n_u = (problem.n, problem.m, problem.n_u) if some else (0, 0, 0)
+    n, rows, n_u, n_c = (problem.n, problem.m, problem.n_u, problem.n_c) if some else (0, 0, 0, 0)
     terms = TERMS if some else 0
     return Series(
-        0.0, 0.0, 0, 0, np.zeros((terms + 2, n)), np.zeros((terms + 2, 2 * rows)), np.zeros((terms, rows)),
-        np.zeros((terms, rows)), np.zeros((terms, rows)), np.zeros((stages + 1, 2 * n_u)),
-        np.zeros((stages + 1, 2 * n_u)), np.zeros(rows), np.zeros(rows), held_of(rows), np.zeros(2 * rows),
-        np.zeros(n), np.zeros(n),
+        0.0, 0.0, 0, 0, np.zeros((terms + 2, n)), np.zeros((terms + 2, rows + n_c)), np.zeros((terms, n_c)),
+        np.zeros((terms, rows)), np.zeros((terms, rows)), np.zeros((terms, n_c)), np.zeros((terms, rows)),
+        np.zeros((stages + 1, 2 * n_u)), np.zeros((stages + 1, 2 * n_u)), np.zeros(n_c), np.zeros(n_c), held_of(rows),
+        np.zeros(rows + n_c), np.zeros(n), np.zeros(n),
     )  # fmt: skip
 
 

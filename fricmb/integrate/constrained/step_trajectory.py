@@ -17,6 +17,10 @@ from fricmb.integrate.problem import LAW_SMOOTH, Codes, Floats, Ints, Problem, S
 from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
 
 
+#: Part of a step just before its end, and of the slip speed there below which slip has ended.
+LITTLE, ENDED = 0.999, 1e-4
+
+
 class StepTrajectory(Trajectory):
     """A run kept step by step; arrays as in ``Record``."""
 
@@ -78,7 +82,37 @@ class StepTrajectory(Trajectory):
         # at its start a step says itself where slip goes, of whose speed round-off may be all there is
         start = np.full(len(self.t), np.inf)
         start[self._row_side != 0] = _still(values[:, self.problem.n : 2 * self.problem.n])
-        return self._complete(self.t, values, self._row_step, side=side, still=start)[:2]
+        force = self._force[self._row_step]
+        rows, directions = self._landings()
+        force[rows, -self.problem.m or None :] = directions
+        start[rows] = np.inf
+        return self._complete(self.t, values, self._row_step, side=side, still=start, force=force)[:2]
+
+    def _landings(self) -> tuple[Ints, Floats]:
+        """Rows at which slip in a plane may end, and directions of slip there, from a little before.
+
+        Of the velocity in which it ends round-off is all there is.
+        """
+        contacts, m = self.problem.contacts, self.problem.m
+        rows = np.flatnonzero((self._row_side == 1) & (self._after[self._row_step] != 0))
+        if not rows.size or (np.diff(contacts.row) == 1).all():
+            return np.zeros(0, np.int64), np.zeros((0, m))
+        step = self._row_step[rows]
+        start, h = self._span[step].T
+        found = [self.motion_at(start + part * h, step).g.T for part in (LITTLE, 1.0)]
+        directions = self._force[step, -m:].copy()
+        for first, last in zip(contacts.row[:-1], contacts.row[1:], strict=True):
+            own = slice(first, last)
+            before, end = (np.linalg.norm(g[:, own], axis=1, keepdims=True) for g in found)
+            g = np.where(end < ENDED * before, found[0][:, own], found[1][:, own])
+            size = np.linalg.norm(g, axis=1, keepdims=True)
+            known = (size > 0.0) & (last - first > 1)
+            directions[:, own] = np.where(known, g / np.where(size > 0.0, size, 1.0), directions[:, own])
+        return rows, directions
+
+    def motion_at(self, t: Floats, step: Ints) -> MotionSamples:
+        """The motion at times within steps that are given."""
+        return self._complete(t, self._at(t, step), step, project=True)[0]
 
     def sample(self, t: Floats) -> Samples:
         """Dense output."""
@@ -185,15 +219,15 @@ class StepTrajectory(Trajectory):
 
     def _complete(
         self, t: Floats, values: Floats, step: Ints, *, project: bool = False, side: Floats | None = None,
-        still: Floats | None = None,
+        still: Floats | None = None, force: Floats | None = None,
     ) -> tuple[MotionSamples, Floats, Floats]:
-        """The motion, what contacts with damping store (n_t,), and powers (n_t, w)."""
+        """The motion, what contacts with damping store (n_t,), and powers (n_t, w); ``force``: see ``complete_at``."""
         problem = self.problem
         n, nz = problem.n, problem.n_z
         q, v, z, _ = (np.ascontiguousarray(x) for x in np.split(values, np.cumsum([n, n, nz]), axis=1))
         found = complete_open(
-            problem, self._opened[step], t, q, v, z, self._mode[step], self._force[step], project=project, side=side,
-            still=still,
+            problem, self._opened[step], t, q, v, z, self._mode[step], self._force[step] if force is None else force,
+            project=project, side=side, still=still,
         )  # fmt: skip
         motion = MotionSamples(
             t=t, q=q.T.copy(), v=v.T.copy(), z=z.T.copy(), F=found[0], g=found[2], N=found[1],
