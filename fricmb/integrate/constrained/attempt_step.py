@@ -43,13 +43,15 @@ from fricmb.integrate.constrained.singular_position import (
     may_have_passed,
     near_singular,
 )
+from fricmb.integrate.constrained.slip_rows import slip_speed
 from fricmb.integrate.constrained.stages import Stages, bring_up_to_date
 from fricmb.integrate.constrained.state import Instant, State
 from fricmb.integrate.constrained.transition import change_modes
 from fricmb.integrate.constrained.uniqueness import margins
 from fricmb.integrate.constrained.watch import Watch
 from fricmb.integrate.model.friction_cone import stick_limit
-from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, STICK, Codes
+from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_CONSTANT, SLIP, STICK, Codes
 from fricmb.integrate.run.breakpoints import EPS
 from fricmb.integrate.run.outcomes import (
     ACCEPTED,
@@ -171,27 +173,61 @@ def may_keep(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float) 
     return same
 
 
-#: Bends gone over in a row, and the part of the span below which that has brought the run on by nothing.
+#: Halts in a row, and the part of the span below which that has brought the run on by nothing.
 PILED_UP, NOTHING = 300, 1e-12
 
 
 @kernel
-def behind_bend(
+def pile_up(c: Control, t: float) -> bool:
+    """Count a halt at t; whether hundreds of them have brought the run on by nothing."""
+    if c.halts == 0:
+        c.first_halt = t
+    c.halts += 1
+    if c.halts <= PILED_UP:
+        return False
+    c.halts = 0
+    return bool(t - c.first_halt < NOTHING * (c.span[1] - c.span[0]))
+
+
+@kernel
+def decide_anew(
     mech: Mech, k: Moving, w: Instant, y: State, before: State, c: Control, out: Watch, rec: Record, part: Codes
 ) -> int:
-    """Behind a bend, whose forces may jump by more than what rests can hold: modes are decided anew."""
-    if c.bends == 0:
-        c.first_bend = y.t
-    c.bends += 1
-    if c.bends > PILED_UP:
-        c.bends = 0
-        if y.t - c.first_bend < NOTHING * (c.span[1] - c.span[0]):
-            return FAIL_CHATTER
+    """Modes where no step gets any further: behind a bend, whose forces may jump by more than what rests can hold."""
+    if pile_up(c, y.t):
+        return FAIL_CHATTER
     c.knot, c.growth = -np.inf, np.inf
     if rec.used[0] > 0:
         rec.after[rec.used[0] - 1] = 1
     code = change_modes(mech, k, w, y, before, c, out, rec, part, -1)
+    set_restart(mech, c, y, False)
     return CHANGED if code == DONE else code
+
+
+#: Shortest steps within which slip ends at once where no other step can be taken; or a part of the largest slip.
+SOON, NEARLY = 100.0, 1e-9
+
+
+@kernel
+def end_slips(
+    mech: Mech, k: Moving, w: Instant, y: State, before: State, c: Control, out: Watch, rec: Record, part: Codes
+) -> int:
+    """Where no step can be taken: end the slips that are as good as round-off, if there are any.
+
+    Of contacts that come to rest together, such as two points of a pad, one is left slipping a little.
+    """
+    shortest = SMALLEST * (c.span[1] - c.span[0]) + 8.0 * EPS * abs(y.t)
+    for p in range(y.mode.shape[0]):
+        if y.mode[p] == SLIP and mech.port.law[p] != LAW_SMOOTH:
+            speed = magnitude(mech.port.row, p, y.g)
+            slows = -slip_speed(mech.port.row, p, y.n, y.F, y.ga)
+            if slows > 0.0 and speed <= max(SOON * shortest * slows, NEARLY * out.top_slip):
+                out.slow = max(out.slow, speed)
+    if out.slow == 0.0:
+        return FAIL_STEP
+    code = decide_anew(mech, k, w, y, before, c, out, rec, part)
+    out.slow = 0.0
+    return code
 
 
 #: Part of a step that is nothing beside it.
@@ -225,7 +261,10 @@ def radau_step(
         h = rung(y, min(h, 0.5 * left) if h > 0.5 * left else h)
     if is_round_off(c, h, t):
         if mech.bends.address.shape[0] > 0 and go_over_bend(mech, k, y):
-            return behind_bend(mech, k, w, y, before, c, out, rec, part)
+            return decide_anew(mech, k, w, y, before, c, out, rec, part)
+        code = end_slips(mech, k, w, y, before, c, out, rec, part)
+        if code != FAIL_STEP:
+            return code
         margins(mech, k, w, y, out, False)
         return FAIL_SINGULAR if has_come_near(out, SUSPECTED) else FAIL_STEP
     kept = may_keep(mech, k, y, st, c, h)
@@ -265,7 +304,7 @@ def radau_step(
         if not c.knot > t:
             # a bend so near that no step ends before it: asked for again it would be as near
             c.knot = -np.inf
-            return behind_bend(mech, k, w, y, before, c, out, rec, part) if go_over_bend(mech, k, y) else FAIL_STEP
+            return decide_anew(mech, k, w, y, before, c, out, rec, part) if go_over_bend(mech, k, y) else FAIL_STEP
         return reject(c, h)
     if error > 1.0:
         return reject(c, h * max(0.2, factor))
@@ -318,7 +357,7 @@ def radau_step(
         c.last_h = 0.0
         c.growth = np.inf
         if mech.bends.address.shape[0] > 0 and go_over_bend(mech, k, y):
-            return behind_bend(mech, k, w, y, before, c, out, rec, part)
+            return decide_anew(mech, k, w, y, before, c, out, rec, part)
         return CHANGED
     if worst >= 0:
         c.knot = -np.inf

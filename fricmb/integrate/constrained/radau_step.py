@@ -38,7 +38,7 @@ class Control(Layout):
     ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next one be, or what it
     was to be where it was cut; ``knot`` when the next step has to end, since a law or an element bends then (not
     ahead: whenever it likes); ``setting_out`` step that was right where something last let go, to be known anew
-    from a step that ``sets_out``; ``bends`` gone over in a row, the first of them at ``first_bend``.
+    from a step that ``sets_out``; ``halts`` at which no step got any further, the first at ``first_halt``.
     """
 
     rtol: float
@@ -67,8 +67,8 @@ class Control(Layout):
     knot: float
     setting_out: float
     sets_out: int
-    bends: int
-    first_bend: float
+    halts: int
+    first_halt: float
 
 
 def control_of(problem: Problem, st: Stages) -> Control:

@@ -137,7 +137,7 @@ def _set_up(
     if tolerance.atol_v is not None:
         c.floor_v[:] = tolerance.atol_v / tolerance.rtol
     c.stops[:] = mech_of(problem).breakpoints
-    c.knot, c.setting_out, c.sets_out, c.bends = -np.inf, np.inf, 0, 0
+    c.knot, c.setting_out, c.sets_out, c.halts = -np.inf, np.inf, 0, 0
     workspace.out.opened = (m.joints.dropped == 2).sum()
     first, weight = _first_speeds(problem, start, t_end), np.sqrt(c.mass)
     trifle = (weight * c.v).max(initial=0.0) <= 1e-12 * (weight * first).max(initial=0.0)

@@ -172,7 +172,7 @@ def change_modes(
     for i in range(n_c):
         part[i] = RESTED if y.mode[i] == STICK else SLIPS_ON
         # without load the direction of slip decides nothing: found anew it would be that of round-off
-        if y.mode[i] == SLIP and magnitude(row, i, y.g) <= 1e-11 * out.top_slip and bears(mech, k, y, i):
+        if y.mode[i] == SLIP and magnitude(row, i, y.g) <= max(1e-11 * out.top_slip, out.slow) and bears(mech, k, y, i):
             part[i] = ARRIVES
     forced = -1
     if 0 <= j < 2 * n_c:

@@ -29,7 +29,8 @@ class Watch(Layout):
     of open joints, its ``rate`` and round-off ``grain`` (``least``: at least), ``opened`` how many there are;
     ``bends`` (n_j,), ``kinked``
     (n_c,), ``kink``, ``side`` (m,): see ``load_kinks``; ``top_slip``, ``top_force``, ``top_position`` running maxima;
-    ``missed`` (n_c,): see ``load_defect``; ``hair`` part of a force that is no sign between stages.
+    ``missed`` (n_c,): see ``load_defect``; ``hair`` part of a force that is no sign between stages;
+    ``slow`` slip that ends at once as no step gets any further, else 0.
     """
 
     margin: Floats
@@ -71,6 +72,7 @@ class Watch(Layout):
     lam: Floats
     missed: Floats
     hair: float
+    slow: float
 
 
 def watch_of(problem: Problem, stages: int) -> Watch:
@@ -88,5 +90,5 @@ def watch_of(problem: Problem, stages: int) -> Watch:
         np.zeros(len(m.joints.port)),
         0, np.zeros(len(m.joints.port), np.int64),
         np.zeros(problem.n_c, np.int64), np.zeros(m.n_rows + 1), np.zeros(m.n_rows + 1), 0.0, 0.0, 0.0,
-        np.zeros(m.n_rows + 1), np.zeros(problem.n_c), 0.0,
+        np.zeros(m.n_rows + 1), np.zeros(problem.n_c), 0.0, 0.0,
     )  # fmt: skip
