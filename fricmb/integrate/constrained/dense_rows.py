@@ -63,7 +63,7 @@ def add_forces(on: Floats2, force: Floats, f: Floats) -> None:
 _stamps = itertools.count(1)
 
 #: Rows of contacts from which on dense ones pay, and the part of them that is not 0; numbers in a matrix of them.
-FEW, FULL, MOST = 2, 0.5, 1e6
+FEW, FULL, MOST = 4, 0.5, 1e6
 
 
 def dense_rows(problem: Problem, m: Mechanism) -> DenseRows:
