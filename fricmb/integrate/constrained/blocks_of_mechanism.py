@@ -15,7 +15,7 @@ BLOCKS = (
     "end_step", "decide", "enumerate_modes", "margins", "change_modes", "violated", "record_step",
     "copy_state", "radau_step", "lightness", "add_stick", "weigh_ports", "laws_between", "load_defect",
     "unseen_force", "jump_error", "share_load", "start_group", "solve_by_series", "put_path",
-    "add_forces", "react_at_rows", "stop_rows", "release_in_turn",
+    "add_forces", "react_at_rows", "stop_rows", "release_in_turn", "release_in_plane",
 )  # fmt: skip
 
 

@@ -25,6 +25,7 @@ from fricmb.integrate.constrained.mode_trial import (
 )
 from fricmb.integrate.constrained.moving import Moving
 from fricmb.integrate.constrained.problem_structs import Mech
+from fricmb.integrate.constrained.release_in_plane import release_in_plane
 from fricmb.integrate.constrained.release_in_turn import release_in_turn
 from fricmb.integrate.constrained.slip_rows import may_open, plane
 from fricmb.integrate.constrained.state import Instant, State
@@ -41,7 +42,7 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
     wrong way, or is held by others, sticks again.  What LETS_GO in ``part`` does not stick.  One that comes to rest is
     released before those that have rested: more friction at rest than in slip lets several combinations hold,
     and what has stuck lets go only where it has to.  Where that does not settle, every combination is tried; many ports
-    let go one after the other (``release_in_turn``).
+    let go one after the other (``release_in_turn``, ``release_in_plane``).
     """
     n_c = y.mode.shape[0]
     count, anew = 0, True
@@ -61,6 +62,8 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
                 release(mech, k, y, c)
             elif freely or y.mode[c] == STICK or plane(mech, c):
                 hold(mech, y, c, anew)
+    if shares_in_plane(mech, y, part) and settles_in_plane(mech, k, w, y, part, forced):
+        return FOUND
     if not freely:
         start_group(mech, k, w, y)
     for _ in range(4 * count + 4):
@@ -81,7 +84,29 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
     if many and find_wrong(mech, k, w, y, part, forced) < 0:
         return FOUND
     code = enumerate_modes(mech, k, w, y, part, count, False)
+    if code != FOUND and settles_in_plane(mech, k, w, y, part, forced):
+        return FOUND
     return enumerate_modes(mech, k, w, y, part, count, True) if code == NO_SOLUTION else code
+
+
+@kernel
+def settles_in_plane(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int) -> bool:
+    """Whether convex problems over discs find modes that hold (``release_in_plane``)."""
+    if not release_in_plane(mech, k, w, y, part, forced) or not react(mech, k, w, y, False):
+        return False
+    if find_wrong(mech, k, w, y, part, forced) >= 0:
+        return False
+    set_out(mech, y)
+    return True
+
+
+@kernel
+def shares_in_plane(mech: Mech, y: State, part: Codes) -> bool:
+    """Whether redundant contacts at rest in the plane share what they hold."""
+    found = False
+    for c in range(part.shape[0]):
+        found = found or (at_rest(mech, y, c, part) and plane(mech, c) and mech.port.soft[c] > 0.0)
+    return found
 
 
 @kernel

@@ -1,12 +1,13 @@
-"""The stages of a step by its Taylor series, where all is linear while modes stay and many contacts have dense rows.
+"""The stages of a step by its Taylor series, where all but directions of slip is linear while modes stay.
 
 With distances e and slip velocities g of the contacts, loads ``N = N0 + k e + c e'`` of those that are closed, friction
 ``F = -n mu N`` of those that slip, and F of those that stick such that g' = 0,
 
     M q'' = f - K q - C q' + sum of the loads and the friction along their rows,
 
-where slip has several directions with ``F = -mu N u``, ``g = r u``, ``r^2 = g . g`` in place of n (:func:`turn`), each power of time follows from those before it: a few products with the dense rows and, once a step, factors of the
-mobility of what sticks.  Newton's method on the same stages factors matrices of all unknowns, and anew for every length
+where slip has several directions with u in place of n, ``g = r u`` and ``r^2 = g . g`` (:func:`turn`), each power of
+time follows from those before it: a few products with the dense rows and, once a step, factors of the mobility of what
+sticks.  Newton's method on the same stages factors matrices of all unknowns, and anew for every length
 of a step that is tried while a transition is located; one series serves all of them, as it is a function of time.
 
 A series of a step that is long beside the fastest period has terms that grow before they fall, and digits go with them:

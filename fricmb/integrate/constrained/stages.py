@@ -49,7 +49,8 @@ class Series(Layout):
 
     ``bent`` 1 where signals are no straight lines.  ``x`` (., n) of positions, ``path`` (., r) of rows (see
     ``dense_rows``), ``N``, ``F``, ``g`` of loads, friction and slip velocities, in a plane ``speed`` and ``unit`` of
-    their sizes and directions; ``u`` (s+1, 2 n_u) of signals and their rates, by values ``signal`` at 0, c.  ``along`` (n_c,) modes as numbers, ``mu`` coefficients; ``held`` what sticks;
+    their sizes and directions; ``u`` (s+1, 2 n_u) of signals and their rates, by values ``signal`` at 0, c.
+    ``along`` (n_c,) modes as numbers, ``mu`` coefficients; ``held`` what sticks;
     ``force`` (r,) along rows; ``f``, ``acc`` (n,) space.
     """
 

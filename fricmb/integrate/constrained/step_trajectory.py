@@ -16,7 +16,6 @@ from fricmb.integrate.output.step_energies import integrate_between, integrate_p
 from fricmb.integrate.problem import LAW_SMOOTH, Codes, Floats, Ints, Problem, Start
 from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
 
-
 #: Part of a step just before its end, and of the slip speed there below which slip has ended.
 LITTLE, ENDED = 0.999, 1e-4
 
@@ -84,7 +83,7 @@ class StepTrajectory(Trajectory):
         start[self._row_side != 0] = _still(values[:, self.problem.n : 2 * self.problem.n])
         force = self._force[self._row_step]
         rows, directions = self._landings()
-        force[rows, -self.problem.m or None :] = directions
+        force[rows, force.shape[1] - self.problem.m :] = directions
         start[rows] = np.inf
         return self._complete(self.t, values, self._row_step, side=side, still=start, force=force)[:2]
 
@@ -100,7 +99,7 @@ class StepTrajectory(Trajectory):
         step = self._row_step[rows]
         start, h = self._span[step].T
         found = [self.motion_at(start + part * h, step).g.T for part in (LITTLE, 1.0)]
-        directions = self._force[step, -m:].copy()
+        directions = self._force[step, self._force.shape[1] - m :].copy()
         for first, last in zip(contacts.row[:-1], contacts.row[1:], strict=True):
             own = slice(first, last)
             before, end = (np.linalg.norm(g[:, own], axis=1, keepdims=True) for g in found)

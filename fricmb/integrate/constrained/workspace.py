@@ -58,9 +58,8 @@ def run_workspace(problem: Problem, tab: Tableau) -> AbstractContextManager[RunW
 def _made(problem: Problem, tab: Tableau) -> RunWorkspace:
     y, end, before = (state_of(problem) for _ in range(3))
     st = stages_of(problem, tab)
-    return RunWorkspace(
-        moving_of(problem), instant_of(problem), y, end, before, st, watch_of(problem, len(tab.c)), control_of(problem, st)
-    )
+    out = watch_of(problem, len(tab.c))
+    return RunWorkspace(moving_of(problem), instant_of(problem), y, end, before, st, out, control_of(problem, st))
 
 
 def _sizes(problem: Problem) -> tuple[int, ...]:
