@@ -200,7 +200,6 @@ def decide_anew(
     if rec.used[0] > 0:
         rec.after[rec.used[0] - 1] = 1
     code = change_modes(mech, k, w, y, before, c, out, rec, part, -1)
-    set_restart(mech, c, y, False)
     return CHANGED if code == DONE else code
 
 
@@ -227,6 +226,8 @@ def end_slips(
         return FAIL_STEP
     code = decide_anew(mech, k, w, y, before, c, out, rec, part)
     out.slow = 0.0
+    # the last step was as short as round-off
+    set_restart(mech, c, y, False)
     return code
 
 

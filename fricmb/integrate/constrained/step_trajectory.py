@@ -98,7 +98,7 @@ class StepTrajectory(Trajectory):
             return np.zeros(0, np.int64), np.zeros((0, m))
         step = self._row_step[rows]
         start, h = self._span[step].T
-        found = [self.motion_at(start + part * h, step).g.T for part in (LITTLE, 1.0)]
+        found = [self._before(start + part * h, step).g.T for part in (LITTLE, 1.0)]
         directions = self._force[step, self._force.shape[1] - m :].copy()
         for first, last in zip(contacts.row[:-1], contacts.row[1:], strict=True):
             own = slice(first, last)
@@ -109,9 +109,9 @@ class StepTrajectory(Trajectory):
             directions[:, own] = np.where(known, g / np.where(size > 0.0, size, 1.0), directions[:, own])
         return rows, directions
 
-    def motion_at(self, t: Floats, step: Ints) -> MotionSamples:
-        """The motion at times within steps that are given."""
-        return self._complete(t, self._at(t, step), step, project=True)[0]
+    def _before(self, t: Floats, step: Ints) -> MotionSamples:
+        """The motion within steps that are given, just before times at which drivers may jump."""
+        return self._complete(t, self._at(t, step), step, project=True, side=np.nextafter(t, -np.inf))[0]
 
     def sample(self, t: Floats) -> Samples:
         """Dense output."""
