@@ -167,6 +167,28 @@ def test_play_whose_damping_sets_in_at_once(method, rtol):
 
 
 @pytest.mark.parametrize("method", ["radau", "bdf"])
+def test_play_beside_a_pin_whose_damping_sets_in_at_once(method):
+    """With joints modes behind a jump are decided at once, too."""
+    motor, load = fm.Body("m", mass=0.01), fm.Body("l", mass=0.05)
+    apart = fm.coordinate("m.x") - fm.coordinate("l.x")
+    rate = fm.speed("m.x") - fm.speed("l.x")
+    spring = STIFF * (sympy.Max(apart - GAP, 0) - sympy.Max(-apart - GAP, 0))
+    F = spring + VISCOUS * rate * sympy.Piecewise((1, sympy.Abs(apart) > GAP), (0, True))
+    arm = fm.RigidBody("arm", mass=1.0, inertia=1.0, position={"y": -1.0}, points={"top": (0.0, 1.0)})
+    scene = fm.Scene("play", [
+        motor, load, arm, fm.Revolute("pin", arm.point("top")),
+        fm.Force("motor", motor, axis="x", value=sympy.sin(2 * sympy.pi * fm.t)),
+        fm.Force("to_motor", motor, axis="x", value=-F), fm.Force("to_load", load, axis="x", value=F),
+        fm.Spring("beside", arm, motor, axis="x", stiffness=1e-12),
+        fm.Contact("dry", load, law=fm.laws.Coulomb(mu_s=DRY), normal_force=1.0),
+    ])  # fmt: skip
+    exact, told = backlash(3.0)
+    sol = fm.simulate(scene, t_end=3.0, rtol=1e-7, method=method, time_limit=60)
+    np.testing.assert_allclose([sol["m.x"][-1], sol["l.x"][-1]], exact, atol=1e-6)
+    assert [e.kind for e in sol.events] == told
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf"])
 def test_a_run_that_ends_on_its_way_into_rest_goes_on_at_rest(method):
     """Slip that a located transition leaves off 0 by round-off, to either side, once turned round before it stuck."""
     scene = fm.models.band_brake()
