@@ -190,6 +190,12 @@ def pile_up(c: Control, t: float) -> bool:
 
 
 @kernel
+def leaves_bend(mech: Mech, k: Moving, y: State) -> bool:
+    """Whether y stood just before a bend of elements' forces, and has been carried over it."""
+    return bool(mech.bends.address.shape[0] > 0 and go_over_bend(mech, k, y))
+
+
+@kernel
 def decide_anew(
     mech: Mech, k: Moving, w: Instant, y: State, before: State, c: Control, out: Watch, rec: Record, part: Codes
 ) -> int:
@@ -261,7 +267,7 @@ def radau_step(
     else:
         h = rung(y, min(h, 0.5 * left) if h > 0.5 * left else h)
     if is_round_off(c, h, t):
-        if mech.bends.address.shape[0] > 0 and go_over_bend(mech, k, y):
+        if leaves_bend(mech, k, y):
             return decide_anew(mech, k, w, y, before, c, out, rec, part)
         code = end_slips(mech, k, w, y, before, c, out, rec, part)
         if code != FAIL_STEP:
@@ -305,7 +311,7 @@ def radau_step(
         if not c.knot > t:
             # a bend so near that no step ends before it: asked for again it would be as near
             c.knot = -np.inf
-            return decide_anew(mech, k, w, y, before, c, out, rec, part) if go_over_bend(mech, k, y) else FAIL_STEP
+            return decide_anew(mech, k, w, y, before, c, out, rec, part) if leaves_bend(mech, k, y) else FAIL_STEP
         return reject(c, h)
     if error > 1.0:
         return reject(c, h * max(0.2, factor))
@@ -357,9 +363,12 @@ def radau_step(
         c.knot = -np.inf
         c.last_h = 0.0
         c.growth = np.inf
-        if mech.bends.address.shape[0] > 0 and go_over_bend(mech, k, y):
+        if leaves_bend(mech, k, y):
             return decide_anew(mech, k, w, y, before, c, out, rec, part)
         return CHANGED
+    if worst >= 0 and is_round_off(c, h, t) and leaves_bend(mech, k, y):
+        # what comes to its limit at once does so behind the bend that y has stood before
+        return decide_anew(mech, k, w, y, before, c, out, rec, part)
     if worst >= 0:
         c.knot = -np.inf
         rec.after[rec.used[0] - 1] = 1
