@@ -209,6 +209,16 @@ def decide_anew(
     return CHANGED if code == DONE else code
 
 
+@kernel
+def get_away(
+    mech: Mech, k: Moving, w: Instant, y: State, before: State, c: Control, out: Watch, rec: Record, part: Codes
+) -> int:
+    """As ``decide_anew`` where the last step was as short as round-off, which the next one need not be."""
+    code = decide_anew(mech, k, w, y, before, c, out, rec, part)
+    set_restart(mech, c, y, False)
+    return code
+
+
 #: Shortest steps within which slip ends at once where no other step can be taken; or a part of the largest slip.
 SOON, NEARLY = 100.0, 1e-9
 
@@ -230,10 +240,8 @@ def end_slips(
                 out.slow = max(out.slow, speed)
     if out.slow == 0.0:
         return FAIL_STEP
-    code = decide_anew(mech, k, w, y, before, c, out, rec, part)
+    code = get_away(mech, k, w, y, before, c, out, rec, part)
     out.slow = 0.0
-    # the last step was as short as round-off
-    set_restart(mech, c, y, False)
     return code
 
 
@@ -268,7 +276,7 @@ def radau_step(
         h = rung(y, min(h, 0.5 * left) if h > 0.5 * left else h)
     if is_round_off(c, h, t):
         if leaves_bend(mech, k, y):
-            return decide_anew(mech, k, w, y, before, c, out, rec, part)
+            return get_away(mech, k, w, y, before, c, out, rec, part)
         code = end_slips(mech, k, w, y, before, c, out, rec, part)
         if code != FAIL_STEP:
             return code
@@ -368,7 +376,7 @@ def radau_step(
         return CHANGED
     if worst >= 0 and is_round_off(c, h, t) and leaves_bend(mech, k, y):
         # what comes to its limit at once does so behind the bend that y has stood before
-        return decide_anew(mech, k, w, y, before, c, out, rec, part)
+        return get_away(mech, k, w, y, before, c, out, rec, part)
     if worst >= 0:
         c.knot = -np.inf
         rec.after[rec.used[0] - 1] = 1
