@@ -247,7 +247,6 @@ def end_slips(
 
 #: Part of a step that is nothing beside it.
 IN_VAIN = 1e-6
-
 #: Steps whose equations were not solved, and their part of those that were accepted, from which on a run creeps.
 VAIN, VAIN_PART = 200, 0.25
 

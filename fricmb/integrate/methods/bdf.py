@@ -56,7 +56,6 @@ class Bdf(Integrator):
     ) -> Trajectory:
         """See :class:`Integrator`."""
         options: dict[str, Any] = {"progress": progress, "memory": memory}
-        formula = radau(stages_for(problem, tolerance.rtol, self.stages))
         # slow to load
         from fricmb.integrate import constrained
 
@@ -67,4 +66,5 @@ class Bdf(Integrator):
         run = constrained.run_mechanism(problem, start, t_end, tolerance, around, **options, multistep=not steep)
         if not stopped_in_a_band(problem, run):
             return run
-        return condensed_after(run, run_one_step(problem, start, t_end, formula, tolerance, memory, progress))
+        condensed = radau(stages_for(problem, tolerance.rtol, self.stages))
+        return condensed_after(run, run_one_step(problem, start, t_end, condensed, tolerance, memory, progress))
