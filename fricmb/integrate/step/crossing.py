@@ -163,3 +163,17 @@ def crossing_at_stages(tab: Tableau, first: float, values: Floats) -> float:
             return float(last_x + (tab.c[j] - last_x) * last / (last - values[j]))
         last, last_x = values[j], tab.c[j]
     return 2.0
+
+
+@kernel
+def narrowed(
+    low: float, first: float, high: float, last: float, moved: int, x: float, here: float, beyond: bool
+) -> tuple[float, float, float, float, int]:
+    """Two places between which a function passes 0, its values there, and which moved, after a look at x.
+
+    ``beyond``: x becomes the upper one.  ``moved``: 1 where that was the last to move, -1 the lower one, 0 neither.  An
+    end that stays twice counts half (Illinois); the next look is where the straight line between the values is 0.
+    """
+    if beyond:
+        return low, first * (0.5 if moved > 0 else 1.0), x, here, 1
+    return x, here, high, last * (0.5 if moved < 0 else 1.0), -1

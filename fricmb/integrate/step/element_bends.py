@@ -20,7 +20,8 @@ from fricmb.integrate.model.forces import Scratch, evaluate
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import Floats, Floats2, Ints
 from fricmb.integrate.run.breakpoints import EPS
-from fricmb.integrate.step.knots import AT_AN_END, NEAR, NOWHERE, narrowed
+from fricmb.integrate.step.crossing import narrowed
+from fricmb.integrate.step.knots import AT_AN_END, NEAR, NOWHERE
 from fricmb.integrate.step.law_defect import ROUND_OFF
 from fricmb.integrate.step.slow_slip import NEARER, TIMES, WITHIN, line_at
 from fricmb.integrate.step.tableau import Tableau, by_line
@@ -65,7 +66,9 @@ def where_turned(
             break
         look(place, model, k, tab, y, st, x, h, line, state)
         put_signs(model.bends, model.bend_start, s, here)
-        low, first, high, last, moved = narrowed(low, first, high, last, moved, x, here[b])
+        low, first, high, last, moved = narrowed(
+            low, first, high, last, moved, x, here[b], beyond=(here[b] < 0.0) == (last < 0.0)
+        )
     return float(min(max(x, low), high))
 
 

@@ -16,7 +16,7 @@ from fricmb.integrate.model.law_values import coefficient, magnitude
 from fricmb.integrate.model.problem_structs import Table
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, OPEN, SLIP, Floats, Floats2, Ints
 from fricmb.integrate.run.room_protocols import AtContacts, AtNodes, Laws, LawsWithStates
-from fricmb.integrate.step.crossing import evaluate, polynomial
+from fricmb.integrate.step.crossing import evaluate, narrowed, polynomial
 from fricmb.integrate.step.felt import Felt
 from fricmb.integrate.step.law_defect import ROUND_OFF, load_between, smooth_defect
 from fricmb.integrate.step.tableau import Tableau, by_line
@@ -72,12 +72,9 @@ def turn(slip: Floats2, d: int, low: float, high: float) -> float:
         if abs(x - before) <= within:
             break
         rate = approach(slip, d, x)
-        if (rate < 0.0) == (last < 0.0):
-            first *= 0.5 if moved > 0 else 1.0
-            high, last, moved = x, rate, 1
-        else:
-            last *= 0.5 if moved < 0 else 1.0
-            low, first, moved = x, rate, -1
+        low, first, high, last, moved = narrowed(
+            low, first, high, last, moved, x, rate, beyond=(rate < 0.0) == (last < 0.0)
+        )
     return x
 
 
