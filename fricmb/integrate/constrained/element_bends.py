@@ -14,9 +14,8 @@ from fricmb.integrate.constrained.radau_step import Control, asked
 from fricmb.integrate.constrained.stages import Stages
 from fricmb.integrate.constrained.state import State
 from fricmb.integrate.model.forces import element_forces
-from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, Codes, Floats, Floats2
-from fricmb.integrate.run.breakpoints import EPS
-from fricmb.integrate.step.element_bends import ASKED, first_bend, look, put_signs
+from fricmb.integrate.problem import LAW_SMOOTH, NORMAL_LAW, OPEN, Codes, Floats
+from fricmb.integrate.step.element_bends import before_bend, carried_over_bend, first_bend
 from fricmb.integrate.step.knots import NOWHERE
 
 
@@ -72,31 +71,6 @@ def felt_by(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, f
         free[n + p] = coefficient * push_by_force(mech, k, y, c, p) if mech.port.joint[p] < 0 else 0.0
 
 
-#: Roundings of the time by which a step ends short of a bend: its last stage must not see what comes behind.
-SHORT_OF = 4096.0
-
-
-@kernel
-def before_bend(
-    mech: Mech, k: Moving, y: State, st: Stages, x: float, low: float, h: float, signs: Floats2, line: Floats,
-    state: Floats2,
-) -> float:  # fmt: skip
-    """A place at x where nothing has changed its sign since ``low``: the last stage of a step that ends there, too."""
-    here, back = np.empty(signs.shape[1]), EPS * (1.0 + abs(y.t) / h)
-    for _ in range(ASKED):
-        look(place_bodies, mech, k, st.tab, y, st, x, h, line, state)
-        put_signs(mech.bends, mech.bend_start, k.s, here)
-        same = True
-        for b in range(here.shape[0]):
-            same = same and (here[b] < 0.0) == (signs[0, b] < 0.0)
-        if same or x - back <= low:
-            break
-        x -= back
-        back *= 4.0
-    # the polynomial itself is known to some roundings
-    return float(max(x - SHORT_OF * EPS * (1.0 + abs(y.t) / h), low))
-
-
 @block
 def bend_within(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, slight: float) -> float:
     """Part of the step h just solved up to the first bend that its polynomials do not know; ``NOWHERE`` without one.
@@ -108,33 +82,12 @@ def bend_within(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: floa
     x, low = first_bend(
         place_bodies, forces_at, felt_by, mech, k, k.s, st.tab, y, st, c, slight * asked(c), h, signs, line, state
     )  # fmt: skip
-    return before_bend(mech, k, y, st, x, low, h, signs, line, state) if x < 1.0 else NOWHERE
+    if not x < 1.0:
+        return NOWHERE
+    return float(before_bend(place_bodies, mech, k, k.s, st.tab, y, st, x, low, h, signs, line, state))
 
 
 @block
 def go_over_bend(mech: Mech, k: Moving, y: State) -> bool:
-    """Carry y over the bend that it has come to, by a few roundings of the time; False where there is none at once.
-
-    As far again as to the first function that changes its sign: several may do so there, each by its own round-off.
-    """
-    count, n = mech.bend_start[mech.bend_start.shape[0] - 1], y.q.shape[0]
-    before, behind, q, v = np.empty(count), np.empty(count), y.q.copy(), y.v.copy()
-    move(mech, k, y.t, y.q, y.v)
-    put_signs(mech.bends, mech.bend_start, k.s, before)
-    way = EPS * max(abs(y.t), 1e-290)
-    for _ in range(ASKED + 4):
-        way *= 4.0
-        for i in range(n):
-            q[i] = y.q[i] + way * y.v[i]
-            v[i] = y.v[i] + way * y.a[i]
-        move(mech, k, y.t + way, q, v)
-        put_signs(mech.bends, mech.bend_start, k.s, behind)
-        for b in range(count):
-            if (before[b] < 0.0) != (behind[b] < 0.0):
-                way *= 2.0
-                for i in range(n):
-                    y.q[i] += way * y.v[i]
-                    y.v[i] += way * y.a[i]
-                y.t += way
-                return True
-    return False
+    """Carry y over the bend that it has come to; False where there is none at once."""
+    return bool(carried_over_bend(place_bodies, mech, k, k.s, y))

@@ -9,16 +9,13 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.model.forces import Scratch, element_forces, normal_force, set_instant
 from fricmb.integrate.model.problem_structs import Packed
 from fricmb.integrate.model.state import State
-from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Codes, Floats, Floats2
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, Codes, Floats
 from fricmb.integrate.run.breakpoints import EPS
-from fricmb.integrate.step.element_bends import ASKED, first_bend, look, put_signs, where_turned
+from fricmb.integrate.step.element_bends import before_bend, carried_over_bend, first_bend, put_signs, where_turned
 from fricmb.integrate.step.knots import AT_AN_END, NEAR, NOWHERE, SLIGHT
 from fricmb.integrate.step.one_step_room import Accuracy, OneStep, widest
 from fricmb.integrate.step.stages import Stages
 from fricmb.integrate.step.weigh_forces import felt_speed, pushed
-
-#: Roundings of the time by which a step ends short of a bend: its last stage must not see what comes behind.
-SHORT_OF = 4096.0
 
 
 @kernel
@@ -59,53 +56,9 @@ def felt_by(packed: Packed, s: Scratch, y: State, st: Stages, acc: Accuracy, h: 
 
 
 @kernel
-def before_bend(
-    packed: Packed, s: Scratch, y: State, one: OneStep, x: float, low: float, h: float, signs: Floats2, line: Floats,
-    state: Floats2,
-) -> float:  # fmt: skip
-    """A place at x where nothing has changed its sign since ``low``: the last stage of a step that ends there, too."""
-    here, back = np.empty(signs.shape[1]), EPS * (1.0 + abs(y.t) / h)
-    for _ in range(ASKED):
-        look(place, packed, s, one.tab, y, one.st, x, h, line, state)
-        put_signs(packed.bends, packed.bend_start, s, here)
-        same = True
-        for b in range(here.shape[0]):
-            same = same and (here[b] < 0.0) == (signs[0, b] < 0.0)
-        if same or x - back <= low:
-            break
-        x -= back
-        back *= 4.0
-    # the polynomial itself is known to some roundings
-    return float(max(x - SHORT_OF * EPS * (1.0 + abs(y.t) / h), low))
-
-
-@kernel
 def go_over_bend(packed: Packed, s: Scratch, y: State) -> bool:
-    """Carry y over the bend that it has come to, by a few roundings of the time; False where there is none at once.
-
-    As far again as to the first function that changes its sign: several may do so there, each by its own round-off.
-    """
-    count, n = packed.bend_start[packed.bend_start.shape[0] - 1], y.q.shape[0]
-    before, behind, q, v = np.empty(count), np.empty(count), y.q.copy(), y.v.copy()
-    set_instant(packed.signals, s, y.t, y.q, y.v)
-    put_signs(packed.bends, packed.bend_start, s, before)
-    way = EPS * max(abs(y.t), 1e-290)
-    for _ in range(ASKED + 4):
-        way *= 4.0
-        for i in range(n):
-            q[i] = y.q[i] + way * y.v[i]
-            v[i] = y.v[i] + way * y.a[i]
-        set_instant(packed.signals, s, y.t + way, q, v)
-        put_signs(packed.bends, packed.bend_start, s, behind)
-        for b in range(count):
-            if (before[b] < 0.0) != (behind[b] < 0.0):
-                way *= 2.0
-                for i in range(n):
-                    y.q[i] += way * y.v[i]
-                    y.v[i] += way * y.a[i]
-                y.t += way
-                return True
-    return False
+    """Carry y over the bend that it has come to; False where there is none at once."""
+    return bool(carried_over_bend(place, packed, s, s, y))
 
 
 @kernel
@@ -134,4 +87,6 @@ def bend_ahead(packed: Packed, s: Scratch, y: State, one: OneStep, acc: Accuracy
     x, low = first_bend(
         place, forces_at, felt_by, packed, s, s, one.tab, y, one.st, acc, SLIGHT * acc.rtol, h, signs, line, state
     )
-    return before_bend(packed, s, y, one, x, low, h, signs, line, state) if x < 1.0 else NOWHERE
+    if not x < 1.0:
+        return NOWHERE
+    return float(before_bend(place, packed, s, s, one.tab, y, one.st, x, low, h, signs, line, state))

@@ -28,6 +28,8 @@ from fricmb.integrate.step.tableau import Tableau, by_line
 
 #: Times that the law is asked on either side of a bend.
 ASKED = 6
+#: Roundings of the time by which a step ends short of a bend: its last stage must not see what comes behind.
+SHORT_OF = 4096.0
 
 
 @kernel
@@ -134,3 +136,53 @@ def first_bend(
                 return found, low
         signs[0], low = signs[1], c[j]
     return NOWHERE, 1.0
+
+
+@kernel
+def before_bend(
+    place: Any, model: Any, k: Any, s: Scratch, tab: Tableau, y: Any, st: Any, x: float, low: float, h: float,
+    signs: Floats2, line: Floats, state: Floats2,
+) -> float:  # fmt: skip
+    """A place at x where nothing has changed its sign since ``low``: the last stage of a step that ends there, too."""
+    here, back = np.empty(signs.shape[1]), EPS * (1.0 + abs(y.t) / h)
+    for _ in range(ASKED):
+        look(place, model, k, tab, y, st, x, h, line, state)
+        put_signs(model.bends, model.bend_start, s, here)
+        same = True
+        for b in range(here.shape[0]):
+            same = same and (here[b] < 0.0) == (signs[0, b] < 0.0)
+        if same or x - back <= low:
+            break
+        x -= back
+        back *= 4.0
+    # the polynomial itself is known to some roundings
+    return float(max(x - SHORT_OF * EPS * (1.0 + abs(y.t) / h), low))
+
+
+@kernel
+def carried_over_bend(place: Any, model: Any, k: Any, s: Scratch, y: Any) -> bool:
+    """Carry y over the bend that it has come to, by a few roundings of the time; False where there is none at once.
+
+    As far again as to the first function that changes its sign: several may do so there, each by its own round-off.
+    """
+    count, n = model.bend_start[model.bend_start.shape[0] - 1], y.q.shape[0]
+    before, behind, q, v = np.empty(count), np.empty(count), y.q.copy(), y.v.copy()
+    place(model, k, y.t, y.q, y.v)
+    put_signs(model.bends, model.bend_start, s, before)
+    way = EPS * max(abs(y.t), 1e-290)
+    for _ in range(ASKED + 4):
+        way *= 4.0
+        for i in range(n):
+            q[i] = y.q[i] + way * y.v[i]
+            v[i] = y.v[i] + way * y.a[i]
+        place(model, k, y.t + way, q, v)
+        put_signs(model.bends, model.bend_start, s, behind)
+        for b in range(count):
+            if (before[b] < 0.0) != (behind[b] < 0.0):
+                way *= 2.0
+                for i in range(n):
+                    y.q[i] += way * y.v[i]
+                    y.v[i] += way * y.a[i]
+                y.t += way
+                return True
+    return False
