@@ -55,3 +55,58 @@ def test_a_load_that_jumps_does_not_open_the_contact(method, rtol):
         other = last - np.sqrt(last * last + 2.0 * left) if left > 0.0 else 2.0 * first - abs(x)
         x = np.sign(x) * other
     assert sol["b.x"][-1] == pytest.approx(x, abs=100.0 * rtol)
+
+
+def switched(block, dry, switches, t_end):
+    """A block on a spring under a force that is switched, in closed form: where it ends, and its changes.
+
+    ``block``: m, k and the velocity at 0; ``dry``: mu_s N, mu_k N; ``switches``: until when, and the force till then.
+    """
+    (m, k, v), (hold, rub) = block, dry
+    w, t, x, n, told = np.sqrt(k / m), 0.0, 0.0, np.sign(v), []
+    for switch, force in switches:
+        until = min(switch, t_end)
+        while t < until:
+            if n == 0.0:
+                push = force - k * x
+                if abs(push) <= hold:
+                    break
+                n = np.sign(push)
+                told.append(("slip", t))
+            # x = middle + A cos(w s) + B sin(w s), until x' is 0
+            middle = (force - n * rub) / k
+            A, B = x - middle, v / w
+            ends = (np.arctan2(B, A) % np.pi or np.pi) / w
+            s = min(ends, until - t)
+            t, x, v = t + s, middle + A * np.cos(w * s) + B * np.sin(w * s), w * (B * np.cos(w * s) - A * np.sin(w * s))
+            if s == ends:
+                v, n = 0.0, 0.0
+                told.append(("stick", t))
+        t = until
+    return x, told
+
+
+@METHODS
+@pytest.mark.parametrize("rtol", [1e-3, 1e-4, 1e-6, 1e-8])
+def test_slip_that_begins_at_jumps_of_something_fast(method, rtol):
+    """Once steps ended roundings before a jump, modes were decided there again and again, and runs crept."""
+    m, k, v, mu_s, mu_k, N, push = 0.5821, 8.707, -0.0479, 0.7199, 0.6097, 1.523, 1.6707
+    omega, phase, reach, place, t_end = 17.98, 4.5969, 2.307, 0.5649, 8.7894
+    far = fm.Body(
+        "far", mass=0.4782, position={"x": reach * np.cos(phase)}, velocity={"x": -reach * omega * np.sin(phase)}
+    )
+    b = fm.Body("b", mass=m, velocity={"x": v})
+    scene = fm.Scene("s", [
+        far, fm.Spring("swing", far, axis="x", stiffness=0.4782 * omega**2),
+        b, fm.Spring("k", b, axis="x", stiffness=k),
+        fm.Contact("dry", b, law=fm.laws.Coulomb(mu_s=mu_s, mu_k=mu_k), normal_force=N),
+        fm.Force("jump", b, axis="x", value=push * sympy.Heaviside(fm.coordinate("far.x") - place * reach)),
+    ])  # fmt: skip
+    half = np.arccos(place)
+    turns = [(2.0 * np.pi * i + side * half - phase, push * (side > 0)) for i in range(1, 27) for side in (-1, 1)]
+    x, told = switched((m, k, v), (mu_s * N, mu_k * N), [(s / omega, force) for s, force in turns], t_end)
+    sol = fm.simulate(scene, t_end=t_end, rtol=rtol, method=method, time_limit=60)
+    assert not sol.stats.notes
+    assert [e.kind for e in sol.events] == [kind for kind, _ in told]
+    assert sol.events.t == pytest.approx([t for _, t in told], abs=rtol)
+    assert sol["b.x"][-1] == pytest.approx(x, abs=rtol)

@@ -125,3 +125,17 @@ def first_crossing(tab: Tableau, first: float, values: Floats, series: Floats) -
     if below > 1.0:
         return 2.0
     return root_between(series, above, below, 1e-13 * below) if above > 0.0 or first > 0.0 else 0.0
+
+
+@kernel
+def narrowed(
+    low: float, first: float, high: float, last: float, moved: int, x: float, here: float, beyond: bool
+) -> tuple[float, float, float, float, int]:
+    """Two places between which a function passes 0, its values there, and which moved, after a look at x.
+
+    ``beyond``: x becomes the upper one.  ``moved``: 1 where that was the last to move, -1 the lower one, 0 neither.  An
+    end that stays twice counts half (Illinois); the next look is where the straight line between the values is 0.
+    """
+    if beyond:
+        return low, first * (0.5 if moved > 0 else 1.0), x, here, 1
+    return x, here, high, last * (0.5 if moved < 0 else 1.0), -1

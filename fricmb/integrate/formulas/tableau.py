@@ -19,7 +19,7 @@ from fricmb.integrate.problem import Complexes, Complexes2, Floats, Floats2
 
 
 class Tableau(Layout):
-    """c, b (s,), A (s, s); lam (l,), T (s, l), Tinv (l, s): real ones, then one of each conjugate pair (T doubled).
+    """c, b (s,), A (s, s); lam (l,), T (s, l), Tinv (l, s) over one of each conjugate pair (T doubled for a pair).
 
     ``top`` (2, s+1): the last and the last but one Legendre coefficient of the polynomial through the values at 0, c.
     ``mid`` (s, s+1): its values half-way between neighbours of 0, c.  ``rate`` (s, s+1): its derivatives at c.
@@ -71,8 +71,7 @@ def _radau_nodes(s: int) -> Floats:
 def _diagonalised(A: Floats) -> tuple[Complexes, Complexes, Complexes]:
     lam, T = np.linalg.eig(A)
     Tinv = np.linalg.inv(T)
-    kept = [i for i in range(len(lam)) if lam[i].imag >= -1e-14]
-    keep = kept  # SORTLATER sorted(kept, key=lambda i: abs(lam[i].imag) >= 1e-14)
+    keep = [i for i in range(len(lam)) if lam[i].imag >= -1e-14]
     weight = np.array([1.0 if abs(lam[i].imag) < 1e-14 else 2.0 for i in keep])
     lam_kept = np.where(weight == 1.0, lam[keep].real, lam[keep]).astype(complex)
     return lam_kept, np.ascontiguousarray(T[:, keep] * weight, dtype=complex), np.ascontiguousarray(Tinv[keep], complex)

@@ -188,6 +188,12 @@ def pile_up(c: Control, t: float) -> bool:
 
 
 @kernel
+def leaves_bend(mech: Mech, k: Moving, y: State) -> bool:
+    """Whether y stood just before a bend of elements' forces, and has been carried over it."""
+    return bool(mech.bends.address.shape[0] > 0 and go_over_bend(mech, k, y))
+
+
+@kernel
 def decide_anew(
     mech: Mech, k: Moving, w: Instant, y: State, before: State, c: Control, out: Watch, rec: Record, part: Codes
 ) -> int:
@@ -199,6 +205,16 @@ def decide_anew(
         rec.after[rec.used[0] - 1] = 1
     code = change_modes(mech, k, w, y, before, c, out, rec, part, -1)
     return CHANGED if code == DONE else code
+
+
+@kernel
+def get_away(
+    mech: Mech, k: Moving, w: Instant, y: State, before: State, c: Control, out: Watch, rec: Record, part: Codes
+) -> int:
+    """As ``decide_anew`` where the last step was as short as round-off, which the next one need not be."""
+    code = decide_anew(mech, k, w, y, before, c, out, rec, part)
+    set_restart(mech, c, y, False)
+    return code
 
 
 #: Shortest steps within which slip ends at once where no other step can be taken; or a part of the largest slip.
@@ -222,10 +238,8 @@ def end_slips(
                 out.slow = max(out.slow, speed)
     if out.slow == 0.0:
         return FAIL_STEP
-    code = decide_anew(mech, k, w, y, before, c, out, rec, part)
+    code = get_away(mech, k, w, y, before, c, out, rec, part)
     out.slow = 0.0
-    # the last step was as short as round-off
-    set_restart(mech, c, y, False)
     return code
 
 
@@ -249,8 +263,8 @@ def attempt_step(
     else:
         h = rung(y, min(h, 0.5 * left) if h > 0.5 * left else h)
     if is_round_off(c, h, t):
-        if mech.bends.address.shape[0] > 0 and go_over_bend(mech, k, y):
-            return decide_anew(mech, k, w, y, before, c, out, rec, part)
+        if leaves_bend(mech, k, y):
+            return get_away(mech, k, w, y, before, c, out, rec, part)
         code = end_slips(mech, k, w, y, before, c, out, rec, part)
         if code != FAIL_STEP:
             return code
@@ -291,7 +305,7 @@ def attempt_step(
         if not c.knot > t:
             # a bend so near that no step ends before it: asked for again it would be as near
             c.knot = -np.inf
-            return decide_anew(mech, k, w, y, before, c, out, rec, part) if go_over_bend(mech, k, y) else FAIL_STEP
+            return decide_anew(mech, k, w, y, before, c, out, rec, part) if leaves_bend(mech, k, y) else FAIL_STEP
         return reject(c, h)
     if error > 1.0:
         return reject(c, h * max(0.2, factor))
@@ -343,9 +357,12 @@ def attempt_step(
         c.knot = -np.inf
         c.last_h = 0.0
         c.growth = np.inf
-        if mech.bends.address.shape[0] > 0 and go_over_bend(mech, k, y):
+        if leaves_bend(mech, k, y):
             return decide_anew(mech, k, w, y, before, c, out, rec, part)
         return CHANGED
+    if worst >= 0 and is_round_off(c, h, t) and leaves_bend(mech, k, y):
+        # what comes to its limit at once does so behind the bend that y has stood before
+        return get_away(mech, k, w, y, before, c, out, rec, part)
     if worst >= 0:
         c.knot = -np.inf
         rec.after[rec.used[0] - 1] = 1

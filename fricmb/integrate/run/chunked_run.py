@@ -24,6 +24,8 @@ _Samples = TypeVar("_Samples", bound=MotionSamples)
 
 #: Bytes of rows that a run keeps for its dense output where the times that are asked for are known.
 MEMORY = 6.4e7
+#: Share of it for each piece behind the first: while a piece is put together nobody looks for Ctrl-C.
+LATER = 0.125
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,14 +62,20 @@ class KeptTrajectory(SampledTrajectory):
 
 
 def pieces(
-    integrator: Integrator, problem: Problem, start: Start, stops: Floats, *, memory: float | None, **options: Any
-) -> Iterator[Trajectory]:
-    """Runs that go on from each other: from the start to each of the stops, or as far as memory allows."""
-    if integrator.pauses and memory is not None:
-        options = {**options, "memory": memory}
+    integrator: Integrator, problem: Problem, start: Start, stops: Floats, *, memory: float | None,
+    later: float = 1.0, **options: Any,
+) -> Iterator[Trajectory]:  # fmt: skip
+    """Runs that go on from each other: from the start to each of the stops, or as far as memory allows.
+
+    Pieces behind the first take ``later`` times the memory.
+    """
+    share = 1.0
     for stop in stops.tolist():
         while start.t < stop:
+            if integrator.pauses and memory is not None:
+                options = {**options, "memory": share * memory}
             trajectory = integrator.integrate(problem, start, stop, **options)
+            share = later
             yield trajectory
             if trajectory.failure is not None:
                 return
@@ -90,7 +98,7 @@ def run_kept(
     parts: list[Trajectory] = []
     before = Losses(friction=np.zeros(problem.n_c))
     stops = np.array([t_end])
-    for part in pieces(integrator, problem, start, stops, memory=memory, t_eval=t_eval, **options):
+    for part in pieces(integrator, problem, start, stops, memory=memory, later=LATER, t_eval=t_eval, **options):
         last = part.failure is not None or part.end.t >= t_end or not integrator.pauses
         if last and not kept:
             return part

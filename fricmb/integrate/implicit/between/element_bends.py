@@ -11,9 +11,10 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.formulas.crossing import narrowed
 from fricmb.integrate.formulas.tableau import by_line
 from fricmb.integrate.implicit.between.between_stages import look_at_step, push_by_force
-from fricmb.integrate.implicit.between.knots import AT_AN_END, NEAR, NOWHERE, narrowed
+from fricmb.integrate.implicit.between.knots import AT_AN_END, NEAR, NOWHERE
 from fricmb.integrate.implicit.between.law_defect import ROUND_OFF
 from fricmb.integrate.implicit.between.slow_slip import NEARER, TIMES, WITHIN, line_at
 from fricmb.integrate.implicit.equations.forces import load_at, move, scatter
@@ -28,6 +29,8 @@ from fricmb.integrate.run.breakpoints import EPS
 
 #: Times that the law is asked on either side of a bend.
 ASKED = 6
+#: Roundings of the time by which a step ends short of a bend: its last stage must not see what comes behind.
+SHORT_OF = 4096.0
 
 
 @kernel
@@ -67,7 +70,9 @@ def where_turned(
             break
         look(mech, k, y, st, x, h, line, state)
         put_signs(mech, k, here)
-        low, first, high, last, moved = narrowed(low, first, high, last, moved, x, here[b])
+        low, first, high, last, moved = narrowed(
+            low, first, high, last, moved, x, here[b], beyond=(here[b] < 0.0) == (last < 0.0)
+        )
     return float(min(max(x, low), high))
 
 
@@ -177,10 +182,6 @@ def first_bend(
                 return found, low
         signs[0], low = signs[1], node[j]
     return NOWHERE, 1.0
-
-
-#: Roundings of the time by which a step ends short of a bend: its last stage must not see what comes behind.
-SHORT_OF = 4096.0
 
 
 @kernel

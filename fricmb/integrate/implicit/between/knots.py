@@ -9,6 +9,7 @@ that place, and the next one begins behind the bend.  A bend too slight to matte
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.formulas.crossing import narrowed
 from fricmb.integrate.formulas.tableau import Tableau
 from fricmb.integrate.implicit.between.felt import Felt
 from fricmb.integrate.implicit.between.slow_slip import TIMES, WITHIN, around, missed, most_pushed, put_slip, speed
@@ -35,19 +36,6 @@ def has_knots(ports: LawsWithKnots, y: AtContacts, k: int) -> bool:
 
 
 @kernel
-def narrowed(
-    low: float, first: float, high: float, last: float, moved: int, x: float, here: float
-) -> tuple[float, float, float, float, int]:
-    """Two places between which a function changes its sign, its values there, and which moved, after one more look.
-
-    An end that stays twice counts half (Illinois); the next look is where the straight line between the values is 0.
-    """
-    if (here < 0.0) == (last < 0.0):
-        return low, first * (0.5 if moved > 0 else 1.0), x, here, 1
-    return x, here, high, last * (0.5 if moved < 0 else 1.0), -1
-
-
-@kernel
 def where_passed(slip: Floats2, d: int, low: float, high: float, knot: float) -> float:
     """Where slip speed passes ``knot`` between two places at which it is on either side; ``slip``: see ``speed``."""
     first, last = speed(slip, d, low) - knot, speed(slip, d, high) - knot
@@ -57,7 +45,10 @@ def where_passed(slip: Floats2, d: int, low: float, high: float, knot: float) ->
         x = (low * last - high * first) / (last - first)
         if not low < x < high or abs(x - before) <= WITHIN * x:
             break
-        low, first, high, last, moved = narrowed(low, first, high, last, moved, x, speed(slip, d, x) - knot)
+        here = speed(slip, d, x) - knot
+        low, first, high, last, moved = narrowed(
+            low, first, high, last, moved, x, here, beyond=(here < 0.0) == (last < 0.0)
+        )
     return float(min(max(x, low), high))
 
 

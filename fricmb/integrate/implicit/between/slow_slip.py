@@ -11,7 +11,7 @@ times the distance, adds up to the impulse that the step has missed.
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.formulas.crossing import evaluate, polynomial
+from fricmb.integrate.formulas.crossing import evaluate, narrowed, polynomial
 from fricmb.integrate.formulas.tableau import Tableau, by_line
 from fricmb.integrate.implicit.between.felt import Felt
 from fricmb.integrate.implicit.between.law_defect import ROUND_OFF, load_between, smooth_defect
@@ -72,12 +72,9 @@ def turn(slip: Floats2, d: int, low: float, high: float) -> float:
         if abs(x - before) <= within:
             break
         rate = approach(slip, d, x)
-        if (rate < 0.0) == (last < 0.0):
-            first *= 0.5 if moved > 0 else 1.0
-            high, last, moved = x, rate, 1
-        else:
-            last *= 0.5 if moved < 0 else 1.0
-            low, first, moved = x, rate, -1
+        low, first, high, last, moved = narrowed(
+            low, first, high, last, moved, x, rate, beyond=(rate < 0.0) == (last < 0.0)
+        )
     return x
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.formulas.crossing import evaluate, first_crossing
+from fricmb.integrate.formulas.crossing import evaluate, first_crossing, narrowed
 from fricmb.integrate.implicit.equations.forces import is_open
 from fricmb.integrate.implicit.events.event_functions import gaps, grain, port_trigger, triggers, violated
 from fricmb.integrate.implicit.modes.uniqueness import margins
@@ -14,9 +14,7 @@ from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import Instant, State
 from fricmb.integrate.implicit.scene.watch import Watch
-from fricmb.integrate.implicit.stages.one_step import (
-    step_to,
-)
+from fricmb.integrate.implicit.stages.one_step import step_to
 from fricmb.integrate.implicit.stages.stages import Stages
 from fricmb.integrate.run.breakpoints import EPS
 
@@ -51,20 +49,6 @@ def from_touch(st: Stages, out: Watch, j: int, h: float, rate: float) -> float:
     return x * h if 0.0 < x <= 1.0 else -1.0
 
 
-#: Which end of a bracket was moved last; neither yet.
-NEITHER, HIGH, LOW = 0, 1, 2
-
-
-@kernel
-def narrowed(
-    low: float, f_low: float, high: float, f_high: float, side: int, at: float, value: float, beyond: bool
-) -> tuple[float, float, float, float, int]:
-    """A bracket and the values at its ends, one of which is now ``at``; of an end that stays twice, half (Illinois)."""
-    if beyond:
-        return low, 0.5 * f_low if side == HIGH else f_low, at, min(value, 0.0), HIGH
-    return at, value, high, 0.5 * f_high if side == LOW else f_high, LOW
-
-
 @kernel
 def has_series(st: Stages) -> bool:
     """Whether there is a series of the step."""
@@ -94,13 +78,13 @@ def by_series(mech: Mech, k: Moving, end: State, st: Stages, out: Watch, j: int,
     f_high = at_series(mech, k, end, st, out, j, high)
     if not (f_low > 0.0 > f_high):
         return -1.0
-    side, root = NEITHER, low
+    moved, root = 0, low
     for _ in range(60):
         root = low + (high - low) * (f_low / (f_low - f_high))
         value = at_series(mech, k, end, st, out, j, root)
         if not low < root < high or value == 0.0:
             break
-        low, f_low, high, f_high, side = narrowed(low, f_low, high, f_high, side, root, value, value < 0.0)
+        low, f_low, high, f_high, moved = narrowed(low, f_low, high, f_high, moved, root, value, beyond=value < 0.0)
         if high - low <= EPS * high:
             break
     return root
@@ -135,7 +119,7 @@ def locate_trigger(
         gaps(mech, k, end.t, end.q, end.v, end.lam, out)
     triggers(mech, k, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
     high, f_high = h, min(out.trigger[j], 0.0)
-    side = NEITHER
+    moved = 0
     step = h
     left = np.inf
     # where friction ends or begins; loads that set in or bend are found from both sides
@@ -188,7 +172,8 @@ def locate_trigger(
             slope = 0.0
         left, guess = abs(value), (step - value / slope if slope < 0.0 else -1.0)
         beyond = value < 0.0 or worst >= 0
-        low, f_low, high, f_high, side = narrowed(low, f_low, high, f_high, side, step, value, beyond)
+        value = min(value, 0.0) if beyond else value
+        low, f_low, high, f_high, moved = narrowed(low, f_low, high, f_high, moved, step, value, beyond)
     return step, j
 
 

@@ -62,10 +62,8 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
                 release(mech, k, y, c)
             elif freely or y.mode[c] == STICK or plane(mech, c):
                 hold(mech, y, c, anew)
-    if shares_in_plane(mech, y, part) and release_in_plane(mech, k, w, y, part, forced) and react(mech, k, w, y, False):
-        if find_wrong(mech, k, w, y, part, forced) < 0:
-            set_out(mech, y)
-            return FOUND
+    if shares_in_plane(mech, y, part) and settles_in_plane(mech, k, w, y, part, forced):
+        return FOUND
     if not freely:
         start_group(mech, k, w, y)
     for _ in range(4 * count + 4):
@@ -86,11 +84,19 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
     if many and find_wrong(mech, k, w, y, part, forced) < 0:
         return FOUND
     code = enumerate_modes(mech, k, w, y, part, count, False)
-    if code != FOUND and release_in_plane(mech, k, w, y, part, forced) and react(mech, k, w, y, False):
-        if find_wrong(mech, k, w, y, part, forced) < 0:
-            set_out(mech, y)
-            return FOUND
+    if code != FOUND and settles_in_plane(mech, k, w, y, part, forced):
+        return FOUND
     return enumerate_modes(mech, k, w, y, part, count, True) if code == NO_SOLUTION else code
+
+
+@kernel
+def settles_in_plane(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int) -> bool:
+    """Whether letting go over discs has found modes that contradict nothing; y sets out in them then."""
+    found = release_in_plane(mech, k, w, y, part, forced) and react(mech, k, w, y, False)
+    if not found or find_wrong(mech, k, w, y, part, forced) >= 0:
+        return False
+    set_out(mech, y)
+    return True
 
 
 @kernel

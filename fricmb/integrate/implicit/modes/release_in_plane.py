@@ -45,7 +45,7 @@ def has_own_limits(mech: Mech, y: State, part: Codes) -> bool:
 
 
 @kernel
-def furthest_beyond(mech: Mech, k: Moving, y: State, taken: Codes, radius: Floats, limit: Floats, F: Floats) -> int:
+def furthest_beyond(mech: Mech, taken: Codes, radius: Floats, limit: Floats, F: Floats) -> int:
     """The port that sticks and is furthest beyond its limit, or -1."""
     worst, over = -1, 1.0 + BEYOND
     for c in range(taken.shape[0]):
@@ -89,7 +89,7 @@ def release_in_plane(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, f
         if not least_energy(rows, free, taken, radius, scale, steep, F):
             y.mode[:] = before
             return False
-        worst = furthest_beyond(mech, k, y, taken, radius, limit, F)
+        worst = furthest_beyond(mech, taken, radius, limit, F)
         if worst >= 0:
             radius[worst] = slips[worst]
     y.mode[:] = before

@@ -102,8 +102,8 @@ def series_of(problem: Problem, stages: int) -> Series:
 class Stages(Layout):
     """Values at the stages (s, .), residuals and changes (s, size), factored matrices and pivots.
 
-    Factors are kept for several steps, ``lengths`` (slots,), 0 where there are none: ``real`` (slots, ., .),
-    ``pairs`` (slots, l, .); those in use are of ``slot``.
+    Factors are kept for several steps, ``lengths`` (slots,), 0 where there are none: ``real`` and
+    ``pairs`` (slots, l, .), each for eigenvalues of its kind; those in use are of ``slot``.
 
     ``Ainv`` (s, s) inverse of the tableau; ``scale`` (n,) what counts as 1 in velocities; ``found`` the rate of
     convergence; ``turns`` for contacts in two directions; ``steep`` for smooth laws; ``felt`` what forces of
@@ -150,14 +150,14 @@ def stages_of(problem: Problem, tab: Tableau, *, turning: bool = True) -> Stages
     """Arrays for the stages of a tableau; not ``turning``: steps near rest are left to another formula."""
     m, order, s = mechanism_of(problem), mech_of(problem).order, len(tab.c)
     size, band = len(order.place), length_of(order.sizes)
-    nc, rows, nz, count, real = problem.n_c, problem.m, problem.n_z, len(tab.lam), len(tab.lam)
+    nc, rows, nz, count = problem.n_c, problem.m, problem.n_z, len(tab.lam)
     slots = 1
     if problem.mechanism is None and s > 1:
         slots = int(np.clip(SLOT_BYTES / max(16.0 * (count + 1) * band, 1.0), 1, SLOTS))
     return Stages(
         tab, np.ascontiguousarray(np.linalg.inv(tab.A)), np.zeros((s, m.n)), np.zeros((s, m.n)),
         np.zeros((s, m.n_rows)), np.zeros((s, rows)), np.zeros((s, nz)), np.zeros((s, nc)), np.zeros((s, rows)),
-        np.zeros((s, size)), Layers(np.zeros(band), np.zeros(band), np.zeros(band)), np.zeros((slots, real, band)),
+        np.zeros((s, size)), Layers(np.zeros(band), np.zeros(band), np.zeros(band)), np.zeros((slots, count, band)),
         np.zeros((slots, count, band), complex), np.zeros(slots * count * size, np.int32), np.zeros(slots), 0,
         np.zeros(size),
         np.zeros((count, size), complex), np.zeros(size, complex), np.zeros((s, nz)), np.zeros(size), np.ones(m.n), 0.0,
