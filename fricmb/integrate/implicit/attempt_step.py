@@ -66,16 +66,27 @@ from fricmb.integrate.run.outcomes import (
     REJECTED,
 )
 
-#: Shortest step, as a part of the span.
-SMALLEST = 1e-14
+#: Shortest step, as a part of the span; near the start as a part of what the run has got on, and of the span at it.
+SMALLEST, SETS_OUT, SHORTEST = 1e-14, 1e-6, 1e-40
 #: Shortest step behind a change of modes, as a part of the time in which velocities change.
 RESTART = 5e-4
 
 
 @kernel
+def shortest_step(c: Control, t: float) -> float:
+    """A step from t that is as good as none.
+
+    What begins far from the balance of its forces, as slip under a law that is steep at rest, may need far shorter ones
+    at the start: of what is moving no run is so near that it would creep.
+    """
+    span = c.span[1] - c.span[0]
+    return float(min(SMALLEST * span, SETS_OUT * (t - c.span[0]) + SHORTEST * span) + 8.0 * EPS * abs(t))
+
+
+@kernel
 def is_round_off(c: Control, h: float, t: float) -> bool:
     """Whether a step h from t is as good as none."""
-    return bool(h <= SMALLEST * (c.span[1] - c.span[0]) + 8.0 * EPS * abs(t))
+    return bool(h <= shortest_step(c, t))
 
 
 @kernel
@@ -229,7 +240,7 @@ def end_slips(
 
     Of contacts that come to rest together, such as two points of a pad, one is left slipping a little.
     """
-    shortest = SMALLEST * (c.span[1] - c.span[0]) + 8.0 * EPS * abs(y.t)
+    shortest = shortest_step(c, y.t)
     for p in range(y.mode.shape[0]):
         if y.mode[p] == SLIP and mech.port.law[p] != LAW_SMOOTH:
             speed = magnitude(mech.port.row, p, y.g)

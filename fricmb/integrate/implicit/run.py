@@ -169,6 +169,7 @@ def _set_up(
     workspace.out.hair = min(max(ROUGH * tolerance.rtol, FINEST), ROUGHEST)
     c.longest = c.bound = _longest_step(problem, t_end - start.t)
     c.q[:], c.v[:], c.z[:] = np.abs(start.q), np.abs(start.v), np.abs(start.z)
+    c.push_z[:] = 0.0
     if tolerance.atol_v is not None:
         c.floor_v[:] = tolerance.atol_v / tolerance.rtol
     c.stops[:] = mech_of(problem).breakpoints

@@ -18,7 +18,8 @@ class Control(Layout):
     work done; ``longest`` step at present, and anywhere, ``bound``; ``span`` (2,) and ``stops`` times to step to;
     ``mass`` (n,) diagonal of M;
     ``made`` step of the factors; ``power`` (s, n_c+2) powers at the stages; ``inertia`` (n,) space
-    of ``between_stages``; ``noise_z`` (n_z,) sizes of states that do not matter; ``growth``: see
+    of ``between_stages``; ``noise_z`` (n_z,) sizes of states that do not matter, ``push_z`` the largest
+    force that a unit of each has made; ``growth``: see
     ``step_control.next_step``; ``wanted`` what the error of the last step alone would let the next one be, or what it
     was to be where it was cut; ``knot`` when the next step has to end, since a law or an element bends then (not
     ahead: whenever it likes); ``setting_out`` step that was right where something last let go, to be known anew
@@ -46,6 +47,7 @@ class Control(Layout):
     weight: Floats2
     inertia: Floats
     noise_z: Floats
+    push_z: Floats
     growth: float
     wanted: float
     knot: float
@@ -62,7 +64,7 @@ def control_of(problem: Problem, s: int, size: int) -> Control:
         0.0, 0.0, np.zeros(n), np.zeros(n), np.zeros(problem.n_z), np.zeros(n), 1.0, 0.0,
         np.zeros((s + 1, size)), np.zeros(8, np.int64), np.zeros(2), 0.0, 0.0, np.zeros(stops), np.zeros(n),
         0.0, np.zeros((s, problem.n_c + 2)), np.zeros(s), np.zeros((s, s + 1)),
-        np.zeros(n), np.zeros(problem.n_z), np.inf, 0.0, -np.inf, np.inf, 0, 0, 0.0,
+        np.zeros(n), np.zeros(problem.n_z), np.zeros(problem.n_z), np.inf, 0.0, -np.inf, np.inf, 0, 0, 0.0,
     )  # fmt: skip
 
 

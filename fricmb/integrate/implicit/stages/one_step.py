@@ -70,14 +70,19 @@ def measure_states(c: Control, y: State, h: float, st: Stages) -> None:
         st.felt.size[a] = max(c.z[a], abs(y.z[a]) + h * abs(y.zd[a]), c.noise_z[a], 1e-290)
 
 
+#: Part of the scale of slip by which the force of a state that is noise moves a contact within a step.
+TRIFLE = 1e-6
+
+
 @kernel
 def state_noise(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: float, part: float) -> None:
     """Sizes of internal states that are noise: ``part`` of what the slip of a step would bring them by.
 
     Newton leaves slip velocities unknown by so much of the tolerance.  A bristle in a direction in which nothing moves
-    holds nothing else, and has no size of its own.
+    holds nothing else, and has no size of its own.  Nor has one that sets out (Karnopp's hold, where slip comes into
+    its band): there as much is noise as moves the contact by a trifle.
     """
-    port = mech.port
+    port, last = mech.port, st.V.shape[0] - 1
     for i in range(y.v.shape[0] if y.z.shape[0] > 0 else 0):
         c.inertia[i] = 1.0 / st.scale[i] / st.scale[i]
     for p in range(y.mode.shape[0]):
@@ -85,11 +90,26 @@ def state_noise(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: floa
         d, nz = port.row[p + 1] - row0, port.z_start[p + 1] - z0
         for i in range(nz):
             c.noise_z[z0 + i] = 0.0
+        if nz > 0:
+            smooth_force(port.laws, p, k.s, st.g[last], row0, d, st.N[last, p], st.z[last], z0, nz)
+            keep_pushes(c, k, d, z0, nz)
+            smooth_force(port.laws, p, k.s, y.g, row0, d, y.N[p], y.z, z0, nz)
+            keep_pushes(c, k, d, z0, nz)
         for a in range(d if nz > 0 else 0):
             slip = np.sqrt(lightness(mech, k, p, a, y.lam, c.inertia))
-            smooth_force(port.laws, p, k.s, y.g, row0, d, y.N[p], y.z, z0, nz)
+            free = lightness(mech, k, p, a, y.lam, mech.mass)
             for i in range(nz):
-                c.noise_z[z0 + i] += part * h * abs(k.s.out[d + nz + (d + i) * (d + 1 + nz) + a]) * slip
+                brought = part * h * abs(k.s.out[d + nz + (d + i) * (d + 1 + nz) + a]) * slip
+                moved = h * free * c.push_z[z0 + i]
+                c.noise_z[z0 + i] += brought + (TRIFLE * slip / moved if moved > 1e-290 else 0.0)
+
+
+@kernel
+def keep_pushes(c: Control, k: Moving, d: int, z0: int, nz: int) -> None:
+    """The largest force that a unit of each state has made, with the law of d directions just asked."""
+    for i in range(nz):
+        for a in range(d):
+            c.push_z[z0 + i] = max(c.push_z[z0 + i], abs(k.s.out[d + nz + a * (d + 1 + nz) + d + 1 + i]))
 
 
 @kernel

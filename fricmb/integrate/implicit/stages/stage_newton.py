@@ -25,6 +25,7 @@ from fricmb.integrate.implicit.stages.stages import (
 from fricmb.integrate.implicit.stages.steep_laws import (
     begin_tries,
     correct_slopes,
+    is_far_off,
     missed_by_laws,
     slopes_at_stages,
     try_next,
@@ -162,8 +163,9 @@ def apply_change(st: Stages) -> float:
         for a in range(st.scale.shape[0]):
             change = max(change, abs(r[a]) / st.scale[a])
         for a in range(st.z.shape[1]):
-            off = abs(r[r.shape[0] - st.z.shape[1] + a])
-            change = max(change, weight * off / st.felt.size[a])
+            off = r[r.shape[0] - st.z.shape[1] + a]
+            # a state that sets out within the step has no size before
+            change = max(change, weight * abs(off) / max(st.felt.size[a], abs(st.z[i, a] - off)))
         at = 0
         for part in (st.V, st.lam, st.F, st.z):
             for a in range(part.shape[1]):
@@ -197,6 +199,7 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, made: 
                 stage_residual(mech, k, y, st, h, i)
         if st.turns.near > 0:
             spread_of_stages(mech, st.turns, st.F, st.g)
+        far = not steep and is_far_off(mech, st.steep, st.F, st.R, y.q.shape[0] + y.lam.shape[0])
         newton_change(mech, st, alone)
         if st.turns.near > 0:
             correct_turns(mech, st.turns, tab, st.R, st.w)
@@ -211,7 +214,8 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, made: 
             if not try_next(mech, st.steep, st.g, iteration):
                 unsolved, last = np.inf, np.inf
                 continue
-            if missed_by_laws(mech, k, st.steep, y.mode, st.V, st.F, st.z, st.N, MISSED * accuracy) > 1.0:
+            part = MISSED * accuracy
+            if missed_by_laws(mech, k, st.steep, y.mode, st.V, st.F, st.z, st.N, st.scale, h, part) > 1.0:
                 last = change
                 continue
         if not alone:
@@ -219,7 +223,7 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, made: 
         rate = change / last if last < np.inf else exact
         if last < np.inf or exact < 1.0:
             st.found = rate
-        if change <= 1e-15 or (rate < 1.0 and change * rate / (1.0 - rate) <= accuracy):
+        if not far and (change <= 1e-15 or (rate < 1.0 and change * rate / (1.0 - rate) <= accuracy)):
             end_iteration(mech, y, st, h, change <= accuracy)
             return iteration + 1
         if last < np.inf and not steep and (rate >= 2.0 or (iteration > 2 and rate >= 0.95)):

@@ -272,6 +272,28 @@ def try_next(mech: Mech, steep: Steep, g: Floats2, iteration: int) -> bool:
     return free
 
 
+#: Part of the largest force of a contact that its law may miss where Newton's changes are taken for an end.
+FAR_OFF = 0.1
+
+
+@kernel
+def is_far_off(mech: Mech, steep: Steep, F: Floats2, r: Floats2, r0: int) -> bool:
+    """Whether a law misses its force by far: ``r[:, r0:]`` are residuals of forces at the stages.
+
+    Where slopes have been taken at rest, of a law that is steep there alone, changes of velocities are small wherever
+    Newton stands.
+    """
+    row = mech.port.row
+    for p in range(steep.port.shape[0]):
+        off, size = 0.0, 1e-290
+        for j in range(F.shape[0]):
+            for a in range(row[steep.port[p]], row[steep.port[p] + 1]):
+                off, size = max(off, abs(r[j, r0 + a])), max(size, abs(F[j, a]))
+        if off > FAR_OFF * size:
+            return True
+    return False
+
+
 #: Relative round-off of a slip velocity beside the velocities that it is the difference of.
 ROUND_OFF = 4e-16
 
@@ -288,12 +310,25 @@ def grain_of_slip(steep: Steep, at: int, V: Floats, g: float) -> float:
 
 
 @kernel
+def force_that_moves(mech: Mech, steep: Steep, at: int, scale: Floats, h: float) -> float:
+    """Force in row ``at`` that within a step h brings a velocity, which nothing else holds, by what counts as 1."""
+    least = np.inf
+    for i in range(scale.shape[0]):
+        lever = abs(steep.slip[at, i])
+        if lever > 0.0:
+            least = min(least, scale[i] * mech.mass[i] / (lever * h))
+    return float(least) if least < np.inf else 0.0
+
+
+@kernel
 def missed_by_laws(
-    mech: Mech, k: Moving, steep: Steep, mode: Codes, V: Floats2, F: Floats2, z: Floats2, N: Floats2, part: float
-) -> float:
+    mech: Mech, k: Moving, steep: Steep, mode: Codes, V: Floats2, F: Floats2, z: Floats2, N: Floats2, scale: Floats,
+    h: float, part: float,
+) -> float:  # fmt: skip
     """Largest miss of a force from what its law says at ``tried``, over what is allowed.
 
-    That is a ``part`` of the largest force of that row in the step, and what the round-off of slip makes of a force.
+    That is a ``part`` of the largest force of that row in the step, or of one that is felt: at rest forces are
+    round-off.  And what the round-off of slip makes of a force.
     """
     port, worst = mech.port, 0.0
     for p in range(steep.port.shape[0]):
@@ -306,7 +341,7 @@ def missed_by_laws(
                 size = 1e-290
                 for i in range(F.shape[0]):
                     size = max(size, abs(F[i, first + a]))
-                allowed = part * size
+                allowed = part * max(size, force_that_moves(mech, steep, steep.start[p] + a, scale, h))
                 for b in range(d):
                     slope = abs(k.s.out[d + nz + a * (d + 1 + nz) + b])
                     allowed += slope * grain_of_slip(steep, steep.start[p] + b, V[j], steep.tried[j, first + b])
