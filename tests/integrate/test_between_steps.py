@@ -13,7 +13,7 @@ import fricmb as fm
 from fricmb.integrate.problem import SLIP
 from fricmb.laws import Coulomb, CoulombViscous
 
-GENERAL = ("radau", "bdf", "collocation")
+GENERAL = ("radau", "bdf")
 
 
 @pytest.mark.parametrize("method", GENERAL)

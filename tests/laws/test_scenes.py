@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import fricmb as fm
 from fricmb import laws
 
 CASES = [(name, d) for name in laws.names for d in getattr(laws, name).example().dimensions]
+
+
 def scene_of(law, d, speed=1.0):
     """1: a block on a belt; 2: a swinging puck; 3: a disc that slides and spins; ``speed``: part of their speeds."""
     if d == 3:
@@ -33,6 +36,27 @@ def test_law_runs_and_its_energy_balances(name, d):
     assert np.isfinite(sol.force("sole")).all()
     if not sol.state("sole").size:
         assert (np.diff(sol.energy.friction_loss) >= -1e-9).all()
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8, 1e-10])
+@pytest.mark.parametrize("method", ["auto", "radau", "bdf"])
+def test_a_hold_that_sets_in_within_its_band(method, rtol):
+    """Against a program of its own: the state is 0 until slip comes into the band, and has no size there."""
+    mu_s, mu_k, v_band, stiffness, damping = 0.6, 0.4, 1.5e-3, 1e4, 30.0
+
+    def rate(t, y):
+        slip, z = y[1] - 0.1, y[2]
+        x = min(1.0, max(0.0, abs(slip) / v_band - 1.0))
+        inside, hold = 1.0 - x * x * (3.0 - 2.0 * x), stiffness * z + damping * slip
+        held = inside * min(1.0, mu_s / abs(hold)) * hold
+        force = -10.0 * (held + (1.0 - inside) * mu_k * np.sign(slip))
+        return [y[1], force - 100.0 * y[0], inside * slip - (1.0 - inside) * abs(slip) * stiffness / mu_s * z]
+
+    t = np.linspace(0.0, 0.5, 101)
+    own = solve_ivp(rate, (0.0, 0.5), [0.0, 0.0, 0.0], method="DOP853", rtol=1e-13, atol=1e-17, t_eval=t, max_step=1e-4)
+    sol = fm.simulate(scene_of(laws.Karnopp.example(), 1), t_end=0.5, rtol=rtol, method=method, t_eval=t)
+    for found, true in ((sol.q[0], own.y[0]), (sol.v[0], own.y[1]), (sol.state("sole")[0], own.y[2])):
+        np.testing.assert_allclose(found, true, atol=rtol * np.abs(true).max())
 
 
 @pytest.mark.parametrize("method", ["auto", "radau", "bdf"])

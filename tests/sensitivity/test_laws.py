@@ -14,8 +14,6 @@ _LEFT_OUT = {"Contensou"}
 #: Of many elements, whose kinks cost a step each.
 _COSTLY = {"ElastoPlastic", "GeneralisedMaxwellSlip", "Iwan", "Leuven"}
 _NOT_IN_JOINTS = {*_COSTLY, "Offset"}
-#: Of a state that makes no force for a while ``radau`` leaves 1e-5, at every tolerance: no ground for differences.
-_METHODS = {"Karnopp": "collocation"}
 _SITUATIONS = ("reversal", "stick-slip")
 _RTOL = 1e-8
 
@@ -32,7 +30,7 @@ def _of(name: str, situation: str):
 def test_law(name, situation):
     """To a thousand tolerances of the largest derivative, or a note says to how much."""
     scene, names = _of(name, situation)
-    given = {"t_end": SITUATIONS[situation].t_end, "method": _METHODS.get(name, "auto")}
+    given = {"t_end": SITUATIONS[situation].t_end, "method": "auto"}
     sol = fm.simulate(scene, rtol=_RTOL, sensitivities=names, **given)
     off = shares_off(sol, names, enough=1e3 * _RTOL, **given)
     assert off

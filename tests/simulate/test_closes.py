@@ -52,7 +52,7 @@ def test_slip_that_has_only_begun_is_no_negative_friction():
     assert told.count("reversal") in (1, 3)  # one, and at this tolerance a pair that a finer run has not
 
 
-@pytest.mark.parametrize(("method", "rtol"), [("radau", 1e-4), ("bdf", 1e-6), (1e-6)])
+@pytest.mark.parametrize(("method", "rtol"), [("radau", 1e-4), ("bdf", 1e-6)])
 def test_slip_that_ends_is_no_negative_friction(method, rtol):
     """Steps that come to rest to the tolerance have passed it by as much: the row before stick has slip reversed."""
     block = fm.Body("block", mass=1.0, axes="xy", velocity={"y": 0.3})

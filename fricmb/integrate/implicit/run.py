@@ -193,7 +193,7 @@ INFINITE = 1e290
 
 def _has_values(k: Moving, y: State) -> bool:
     """Whether all that acts at the start has a value: no step from there ends, however short."""
-    return all(np.all(np.abs(x) < INFINITE) for x in (y.a, y.F, y.N, y.g, y.zd, k.s.X))
+    return all(np.all(np.abs(x) < INFINITE) for x in (y.a, y.F, y.N, y.g, y.zd, k.s.X, k.fy))
 
 
 def _longest_step(problem: Problem, span: float) -> float:

@@ -14,6 +14,7 @@ from fricmb.integrate.implicit.scene.structure import mechanism_of, with_open
 from fricmb.integrate.implicit.workspace import evaluation
 from fricmb.integrate.model.damped_normals import damped_normals
 from fricmb.integrate.problem import LAW_SMOOTH, Codes, Floats, Ints, Problem, Start
+from fricmb.integrate.run.outcomes import FAIL_INFINITE, FAILURES
 from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
 
 #: Part of a step just before its end, and of the slip speed there below which slip has ended.
@@ -55,9 +56,9 @@ class StepTrajectory(Trajectory):
 
     @cached_property
     def t(self) -> Floats:
-        """Times of the accepted steps."""
+        """Times of the accepted steps; none where the start has no values."""
         if not len(self._span):
-            return np.array([self.end.t])
+            return np.array([] if self.failure == FAILURES[FAIL_INFINITE] else [self.end.t])
         start = self._span[self._row_step, 0]
         ends = np.append(self._span[1:, 0], self.end.t)[self._row_step]
         times: Floats = np.where(self._row_side == 0, start, ends)
