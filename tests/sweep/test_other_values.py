@@ -9,7 +9,6 @@ import fricmb as fm
 from fricmb.integrate.array_cache import forget_results
 from fricmb.integrate.collocation.one_contact import workspace as one_contact
 from fricmb.integrate.implicit.scene import pattern
-from fricmb.integrate.model import structure
 from fricmb.integrate.run import workspace
 from fricmb.plan import _same, make_plan
 from fricmb.plan._make import _make
@@ -63,8 +62,6 @@ def forget():
     for store in (one_contact._store, workspace._store, pattern._store, _same._common, _same._known):
         store.clear()
     forget_results()
-    structure._places.cache_clear()
-    structure._order.cache_clear()
 
 
 def outcome(run):
