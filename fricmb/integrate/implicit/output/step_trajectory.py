@@ -18,8 +18,8 @@ from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Codes, Floats, Int
 from fricmb.integrate.run.outcomes import FAIL_INFINITE, FAILURES
 from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
 
-#: Parts of a step before its end; part of the slip speed at the last of them below which slip has ended; times the speed
-#: at the end by which one is more than round-off.
+#: Parts of a step before its end; part of the slip speed at the last of them below which slip has ended; times the
+#: speed at the end by which one is more than round-off.
 LITTLE, ENDED, SEEN = (0.9, 0.99, 0.999), 1e-4, 30.0
 
 
