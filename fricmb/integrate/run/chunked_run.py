@@ -24,8 +24,8 @@ _Samples = TypeVar("_Samples", bound=MotionSamples)
 
 #: Bytes of rows that a run keeps for its dense output where the times that are asked for are known.
 MEMORY = 6.4e7
-#: Share of it for each piece behind the first: while a piece is put together nobody looks for Ctrl-C.
-LATER = 0.125
+#: Bytes of each piece behind the first, at most: while a piece is put together nobody looks for Ctrl-C.
+LATER = 8e6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,19 +63,19 @@ class KeptTrajectory(SampledTrajectory):
 
 def pieces(
     integrator: Integrator, problem: Problem, start: Start, stops: Floats, *, memory: float | None,
-    later: float = 1.0, **options: Any,
+    later: float = np.inf, **options: Any,
 ) -> Iterator[Trajectory]:  # fmt: skip
     """Runs that go on from each other: from the start to each of the stops, or as far as memory allows.
 
-    Pieces behind the first take ``later`` times the memory.
+    A piece behind the first takes no more than ``later`` bytes either.
     """
-    share = 1.0
+    if integrator.pauses and memory is not None:
+        options = {**options, "memory": memory}
     for stop in stops.tolist():
         while start.t < stop:
-            if integrator.pauses and memory is not None:
-                options = {**options, "memory": share * memory}
             trajectory = integrator.integrate(problem, start, stop, **options)
-            share = later
+            if "memory" in options:
+                options["memory"] = min(options["memory"], later)
             yield trajectory
             if trajectory.failure is not None:
                 return
