@@ -123,7 +123,7 @@ def run_mechanism(
         k, w, y, _, _, _, out, control = workspace
         limits = steps_of_run(problem, start.t, t_end, tolerance)
         stepping = (loop or one_step_loop)(Setting(problem, start, t_end, mech, workspace, record, part, limits))
-        chunks, impacts = Chunks(record, "values", "span", "force", "mode", "opened", "after"), None
+        chunks, impacts = Chunks(record, "values", "span", "force", "ahead", "mode", "opened", "after"), None
         go_on: Callable[[], int] = stepping
         code = begin(mech, k, w, y, control, out, part, start.mode is not None, small, reach)
         if not _has_values(k, y):
@@ -143,7 +143,7 @@ def run_mechanism(
         failure = failure or (impacts.failure if impacts is not None else None)
         failure = failure or (failure_text(code, problem, k, y, out) if code not in (DONE, FULL, SLICE_OVER) else None)
         last, counts = end_of(y), control.counts.copy()
-    values, span, force, mode, opened, after = (np.concatenate(x) for x in zip(*chunks.parts, strict=True))
+    values, span, force, ahead, mode, opened, after = (np.concatenate(x) for x in zip(*chunks.parts, strict=True))
     if chunks.broken:
         failure = failure or FAILURES[FAIL_INFINITE]
     notes = (*notes, *_dropped_notes(mechanism_of(problem)), *held_notes(problem, span[:, 0], mode, opened))
@@ -153,7 +153,7 @@ def run_mechanism(
         notes = (*notes, *impacts.notes)
         transitions = impacts.log.transitions(transitions, span[:, 0], opened, last.t)
     return made(
-        whole, span, values, force, mode, opened, after, transitions, counters(counts, notes), last, failure,
+        whole, span, values, force, ahead, mode, opened, after, transitions, counters(counts, notes), last, failure,
         np.concatenate([[0.0], tab.c]), tolerance.rtol,
     )  # fmt: skip
 

@@ -21,7 +21,8 @@ class Record(Layout):
     """Space for steps.
 
     ``span`` (k, 2): start and length; ``values`` (k, s+1, 2n + n_z + n_c + 2): [q, v, z, work] at 0, c; ``force``
-    (k, m + 2 m_p): [lam, F, n] at the start; ``mode`` (k, n_c); ``opened`` (k, n_j) 1 for joints without contact;
+    (k, m + 2 m_p): [lam, F, n] at the start; ``ahead`` (k, m_p): n at the end; ``mode`` (k, n_c);
+    ``opened`` (k, n_j) 1 for joints without contact;
     ``after`` (k,) 1 where a transition follows the step;
     ``event`` (n_e, 3): time, contact, kind; ``used`` (2,) steps and events.
     """
@@ -29,6 +30,7 @@ class Record(Layout):
     span: Floats2
     values: Floats3
     force: Floats2
+    ahead: Floats2
     mode: Codes2
     opened: Codes2
     after: Ints
@@ -46,9 +48,9 @@ def record_of(problem: Problem, stages: int, capacity: int) -> Record:
     m, nc = mechanism_of(problem), problem.n_c
     return room(Record(
         np.zeros((capacity, 2)), np.zeros((capacity, stages + 1, width(problem))),
-        np.zeros((capacity, m.n_rows + 2 * problem.m)), np.zeros((capacity, nc), np.int8),
-        np.zeros((capacity, len(mechanism_of(problem).joints.port)), np.int8), np.zeros(capacity, np.int64),
-        np.zeros((capacity + 8 * nc + 8, 3)), np.zeros(2, np.int64),
+        np.zeros((capacity, m.n_rows + 2 * problem.m)), np.zeros((capacity, problem.m)),
+        np.zeros((capacity, nc), np.int8), np.zeros((capacity, len(mechanism_of(problem).joints.port)), np.int8),
+        np.zeros(capacity, np.int64), np.zeros((capacity + 8 * nc + 8, 3)), np.zeros(2, np.int64),
     ))  # fmt: skip
 
 
@@ -79,6 +81,7 @@ def record_step(mech: Mech, out: Record, y: State, end: State, st: Stages, c: Co
     for a in range(rows):
         out.force[i, m + a] = y.F[a]
         out.force[i, m + rows + a] = y.n[a]
+        out.ahead[i, a] = end.n[a]
     for a in range(y.mode.shape[0]):
         out.mode[i, a] = y.mode[a]
     for j in range(mech.joint.port.shape[0]):

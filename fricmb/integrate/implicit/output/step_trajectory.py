@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cached_property
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -14,13 +13,9 @@ from fricmb.integrate.implicit.scene.problem_structs import masses, mech_of
 from fricmb.integrate.implicit.scene.structure import mechanism_of, with_open
 from fricmb.integrate.implicit.workspace import evaluation
 from fricmb.integrate.model.damped_normals import damped_normals
-from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Codes, Floats, Ints, Problem, Start
+from fricmb.integrate.problem import LAW_SMOOTH, Codes, Floats, Ints, Problem, Start
 from fricmb.integrate.run.outcomes import FAIL_INFINITE, FAILURES
 from fricmb.integrate.trajectory import Counters, MotionSamples, Samples, Trajectory, Transitions
-
-#: Parts of a step before its end; part of the slip speed at the last of them below which slip has ended; times the
-#: speed at the end by which one is more than round-off.
-LITTLE, ENDED, SEEN = (0.9, 0.99, 0.999), 1e-4, 30.0
 
 
 class StepTrajectory(Trajectory):
@@ -32,6 +27,7 @@ class StepTrajectory(Trajectory):
         span: Floats,
         values: Floats,
         force: Floats,
+        ahead: Floats,
         mode: Codes,
         opened: Codes,
         after: Ints,
@@ -43,7 +39,8 @@ class StepTrajectory(Trajectory):
         rtol: float,
     ) -> None:
         super().__init__(problem, transitions, counters, end, failure)
-        self._span, self._values, self._force, self._mode, self._after = span, values, force, mode, after
+        self._span, self._values, self._mode, self._after = span, values, mode, after
+        self._force, self._ahead = force, ahead
         self._nodes, self._opened, self._rtol = nodes, opened, rtol
         # every step's end, the start of the run, and right-hand values after transitions
         twice = after != 0
@@ -81,52 +78,14 @@ class StepTrajectory(Trajectory):
         values = self._values[self._row_step, np.where(self._row_side == 0, 0, len(self._nodes) - 1)]
         # what a step ends with belongs to the side of a breakpoint that it comes from
         side = np.where(self._row_side == 0, self.t, np.nextafter(self.t, -np.inf))
-        # at its start a step says itself where slip goes, of whose speed round-off may be all there is
-        start = np.full(len(self.t), np.inf)
-        start[self._row_side != 0] = _still(values[:, self.problem.n : 2 * self.problem.n])
+        # where a step begins, or ends in a transition, it says itself where slip goes, of whose speed round-off may be
+        # all there is
         force = self._force[self._row_step]
-        rows, directions = self._landings()
-        force[rows, force.shape[1] - self.problem.m :] = directions
-        start[rows] = np.inf
-        return self._complete(self.t, values, self._row_step, side=side, still=start, force=force)[:2]
-
-    def _landings(self) -> tuple[Ints, Floats]:
-        """Rows at which slip in a plane may end, and directions of slip there: where it ends, from a little before.
-
-        Of the velocity in which it ends round-off is all there is.  What goes on slipping has the direction with which
-        the next step begins, where nothing makes that jump.
-        """
-        contacts, m = self.problem.contacts, self.problem.m
-        rows = np.flatnonzero((self._row_side == 1) & (self._after[self._row_step] != 0))
-        if not rows.size or (np.diff(contacts.row) == 1).all():
-            return np.zeros(0, np.int64), np.zeros((0, m))
-        step = self._row_step[rows]
-        start, h = self._span[step].T
-        found = [self._before(start + part * h, step).g.T for part in (*LITTLE, 1.0)]
-        directions = self._force[step, self._force.shape[1] - m :].copy()
-        behind, ahead = self._behind(step)
-        jumps = np.isin(start + h, self.breakpoints) | mechanism_of(self.problem).has_impacts
-        for c, (first, last) in enumerate(pairwise(contacts.row)):
-            own = slice(first, last)
-            lands = (self._mode[step, c] == SLIP) & (behind[:, c] == STICK)
-            g = _last_slip([g[:, own] for g in found], lands)
-            size = np.linalg.norm(g, axis=1, keepdims=True)
-            known = (size > 0.0) & (last - first > 1)
-            directions[:, own] = np.where(known, g / np.where(size > 0.0, size, 1.0), directions[:, own])
-            goes_on = (self._mode[step, c] == SLIP) & (behind[:, c] == SLIP) & ~jumps
-            directions[goes_on, own] = ahead[goes_on, own]
-        return rows, directions
-
-    def _behind(self, step: Ints) -> tuple[Codes, Floats]:
-        """Modes (., n_c) behind steps, and directions of slip (., m) there."""
-        m = self.problem.m
-        modes = np.concatenate([self._mode[1:], np.asarray(self.end.mode)[None, :]])
-        directions = np.concatenate([self._force[1:, self._force.shape[1] - m :], np.asarray(self.end.direction)[None]])
-        return modes[step], directions[step]
-
-    def _before(self, t: Floats, step: Ints) -> MotionSamples:
-        """The motion within steps that are given, just before times at which drivers may jump."""
-        return self._complete(t, self._at(t, step), step, project=True, side=np.nextafter(t, -np.inf))[0]
+        ends = (self._row_side == 1) & (self._after[self._row_step] != 0)
+        force[ends, force.shape[1] - self.problem.m :] = self._ahead[self._row_step[ends]]
+        still = np.full(len(self.t), _still(values[:, self.problem.n : 2 * self.problem.n]))
+        still[ends | (self._row_side == 0)] = np.inf
+        return self._complete(self.t, values, self._row_step, side=side, still=still, force=force)[:2]
 
     def sample(self, t: Floats) -> Samples:
         """Dense output."""
@@ -248,23 +207,6 @@ class StepTrajectory(Trajectory):
             mode=np.ascontiguousarray(self._mode[step].T),
         )  # fmt: skip
         return motion, found[5][0], found[6].T
-
-
-def _last_slip(found: list[Floats], lands: Any) -> Floats:
-    """Slip velocities (n_t, d) whose directions are those of the ends of steps.
-
-    ``found``: at places within the steps, each nearer to the end, and there; ``lands`` (n_t,) whether slip ends there.
-    0 where a slip that ends is round-off at all places: the direction is that at the start of the step then.
-    """
-    *places, end = found
-    along = np.sum(places[-1] * end, axis=1)
-    speed, before = np.linalg.norm(end, axis=1), np.linalg.norm(places[-1], axis=1)
-    g = np.where(((along < 0.0) | (speed < ENDED * before))[:, None], places[-1], end)
-    g[lands] = 0.0
-    for place in places:
-        seen = lands & (np.linalg.norm(place, axis=1) > SEEN * speed)
-        g[seen] = place[seen]
-    return g
 
 
 def _still(v: Floats) -> float:

@@ -181,7 +181,7 @@ def solve_stages(mech: Mech, k: Moving, y: State, st: Stages, c: Control, h: flo
     predict_stages(c, y, st, h)
     for i in range(st.tab.c.shape[0]):
         keep_held(mech, y.mode, y.F, st.F[i])
-    accuracy = KAPPA * asked(c) * (1.0 if c.made == h else STRICTER)
+    accuracy = KAPPA * asked(c) * (1.0 if c.made == h and st.turns.near == 0 else STRICTER)
     used = iterate_stages(mech, k, y, st, h, c.made, max(accuracy, FINEST))
     c.counts[2] += max(used, 1) * st.tab.c.shape[0]
     state_noise(mech, k, y, st, c, h, KAPPA)
