@@ -32,6 +32,7 @@ from fricmb.integrate.implicit.equations.slip_rows import slip_speed
 from fricmb.integrate.implicit.events.event_functions import has_come_to_rest, violated
 from fricmb.integrate.implicit.events.event_location import last_unique, locate_trigger
 from fricmb.integrate.implicit.events.load_kinks import find_kinks
+from fricmb.integrate.implicit.events.trigger_places import first_kink, is_of_port
 from fricmb.integrate.implicit.modes.transition import change_modes
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.output.recorder import Record, copy_state, record_step
@@ -359,7 +360,7 @@ def attempt_step(
         c.sets_out = 0
     if near_singular(c, out, h):
         return FAIL_SINGULAR
-    if worst >= 2 * y.mode.shape[0] + mech.joint.port.shape[0]:
+    if worst >= first_kink(mech):
         # a load that has a kink: nothing changes but the polynomials
         c.last_h = 0.0
         c.made = 0.0
@@ -378,7 +379,7 @@ def attempt_step(
         c.knot = -np.inf
         rec.after[rec.used[0] - 1] = 1
         c.growth = np.inf
-        lets_go = worst < 2 * y.mode.shape[0] and y.mode[worst // 2] == STICK
+        lets_go = is_of_port(mech, worst) and y.mode[worst // 2] == STICK
         code = change_modes(mech, k, w, y, before, c, out, rec, part, worst)
         set_restart(mech, c, y, lets_go)
         return CHANGED if code == DONE else code

@@ -15,6 +15,7 @@ from fricmb.integrate.implicit.equations.projection import project_velocities
 from fricmb.integrate.implicit.equations.singular_position import start_watch, starts_dependent
 from fricmb.integrate.implicit.events.event_functions import triggers
 from fricmb.integrate.implicit.events.load_kinks import mark_bends
+from fricmb.integrate.implicit.events.trigger_places import first_joint, first_kink
 from fricmb.integrate.implicit.modes.mode_decision import decide, mark_rest
 from fricmb.integrate.implicit.modes.mode_enumeration import FOUND, SEVERAL
 from fricmb.integrate.implicit.modes.mode_trial import most_light
@@ -94,16 +95,16 @@ def begin(
     out.top_slip = max(out.top_slip, reach * np.sqrt(most_light(mech, k, y)))
     if margins(mech, k, w, y, out, True) <= 0.0:
         return FAIL_MARGIN
-    n_c = y.mode.shape[0]
+    joints = first_joint(mech)
     mark_bends(mech, k, out)
     for _ in range(mech.joint.port.shape[0]):
         triggers(mech, k, out, y.mode, y.n, y.F, y.N, y.g, y.lam, False)
-        worst = 2 * n_c
-        for j in range(2 * n_c, 2 * n_c + mech.joint.port.shape[0]):
+        worst = joints
+        for j in range(joints, first_kink(mech)):
             worst = j if out.trigger[j] < out.trigger[worst] else worst
         if out.trigger[worst] >= 0.0:
             break
-        code = let_go(mech, k, w, y, out, worst - 2 * n_c)
+        code = let_go(mech, k, w, y, out, worst - joints)
         if code != DONE:
             return FAIL_SINGULAR if code == FAIL_SINGULAR else FAIL_LOST
         mark_rest(mech, y, small, part)

@@ -9,6 +9,7 @@ from fricmb.integrate.implicit.equations.forces import call_joint, is_open, move
 from fricmb.integrate.implicit.equations.jacobian_layers import place_slope
 from fricmb.integrate.implicit.equations.slip_rows import lack, may_open, plane, slip_speed, spare
 from fricmb.integrate.implicit.events.load_kinks import BEFORE, BEHIND, law_side
+from fricmb.integrate.implicit.events.trigger_places import first_joint, first_kink, is_of_port
 from fricmb.integrate.implicit.modes.load_share import share_stages
 from fricmb.integrate.implicit.modes.loop_mobility import may_share
 from fricmb.integrate.implicit.scene.moving import Moving
@@ -61,7 +62,7 @@ def gap_noise(mech: Mech, k: Moving, j: int, n_x: int) -> float:
 @kernel
 def gaps_within(mech: Mech, k: Moving, y: State, end: State, st: Stages, out: Watch) -> None:
     """Distances of open joints at the start and the stages of the step from y to end, into ``out.inner``."""
-    first = 2 * y.mode.shape[0]
+    first = first_joint(mech)
     for j in range(out.gap.shape[0]):
         out.grain[j] = out.least[j]
     gaps(mech, k, y.t, y.q, y.v, y.lam, out)
@@ -103,15 +104,14 @@ def triggers(
 
     Behind them one a port whose load has a kink in the present step.  Slip almost without load may turn as it likes.
     """
-    joint, n_c = mech.joint, mode.shape[0]
-    for j in range(2 * n_c):
+    joint, joints, kinks = mech.joint, first_joint(mech), first_kink(mech)
+    for j in range(joints):
         out.trigger[j] = port_trigger(mech, k, out, mode, direction, F, N, g, j)
     for j in range(joint.port.shape[0]):
-        out.trigger[2 * n_c + j] = lam[joint.row[j]] if joint.one_sided[j] else 1.0
+        out.trigger[joints + j] = lam[joint.row[j]] if joint.one_sided[j] else 1.0
         if is_open(mech, j):
-            out.trigger[2 * n_c + j] = out.gap[j] if at_end else 1.0
-    kinks = 2 * n_c + joint.port.shape[0]
-    for c in range(n_c):
+            out.trigger[joints + j] = out.gap[j] if at_end else 1.0
+    for c in range(mode.shape[0]):
         out.trigger[kinks + c] = 1.0
         if out.kinked[c] == BEFORE or out.kinked[c] == BEHIND:
             side = law_side(mech, k, c, g, N)
@@ -124,19 +124,19 @@ def triggers(
 
 
 @kernel
-def is_slip(j: int, y: State) -> bool:
+def is_slip(mech: Mech, j: int, y: State) -> bool:
     """Whether trigger j is a slip velocity (else a force)."""
-    return bool(j < 2 * y.mode.shape[0] and j % 2 == 0 and y.mode[j // 2] == SLIP)
+    return is_of_port(mech, j) and j % 2 == 0 and y.mode[j // 2] == SLIP
 
 
 @kernel
 def grain(mech: Mech, out: Watch, j: int, y: State) -> float:
     """Round-off of trigger j: of a slip velocity, a distance or a force."""
-    n_c = y.mode.shape[0]
-    if is_slip(j, y):
+    joints = first_joint(mech)
+    if is_slip(mech, j, y):
         return float(1e-13 * out.top_slip)
-    if is_open(mech, j - 2 * n_c):
-        return float(max(out.grain[j - 2 * n_c], 1e-290))
+    if is_open(mech, j - joints):
+        return float(max(out.grain[j - joints], 1e-290))
     return float(1e-13 * out.top_force)
 
 
@@ -147,7 +147,7 @@ def violated(mech: Mech, k: Moving, w: Instant, out: Watch, y: State, end: State
     ``out.where`` is less than 1 where neither the end nor a stage shows it, but the polynomial through them does there.
     """
     s = st.tab.c.shape[0]
-    worst, least, first = -1, 0.0, 2 * end.mode.shape[0]
+    worst, least, first = -1, 0.0, first_joint(mech)
     out.where = 1.0
     shared = share_stages(mech, k, w, y, end, st)
     triggers(mech, k, out, end.mode, end.n, y.F, y.N, y.g, y.lam, False)
@@ -193,8 +193,7 @@ def has_come_to_rest(mech: Mech, k: Moving, out: Watch, y: State, end: State) ->
 @kernel
 def is_smooth(mech: Mech, k: Moving, j: int, y: State, st: Stages) -> bool:
     """Whether trigger j is what its values say between the stages: slip almost without load may turn as it likes."""
-    n_c = y.mode.shape[0]
-    if j >= 2 * n_c:
+    if not is_of_port(mech, j):
         return True
     if j % 2 == 1 or y.mode[j // 2] == OPEN or mech.port.law[j // 2] == LAW_SMOOTH:
         return may_open(mech, j // 2)
@@ -208,7 +207,7 @@ def is_smooth(mech: Mech, k: Moving, j: int, y: State, st: Stages) -> bool:
 def size_of_force(mech: Mech, k: Moving, out: Watch, j: int, y: State) -> float:
     """What the force of trigger j is measured by: the limit of a port that sticks, else the largest force."""
     c = j // 2
-    if j < 2 * y.mode.shape[0] and j % 2 == 0:
+    if is_of_port(mech, j) and j % 2 == 0:
         return stick_limit(mech.port, mech.port.laws, c, k.s, max(y.N[c], 0.0))
     return float(out.top_force)
 
@@ -220,11 +219,11 @@ def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, share
     ``shared``: contacts in loops share their load anew, by forces that jump between two stages.
     """
     found = -1
-    for j in range(2 * y.mode.shape[0] + mech.joint.port.shape[0]):
-        jumps = shared and j < 2 * y.mode.shape[0] and y.mode[j // 2] == STICK and may_share(mech, j // 2)
+    for j in range(first_kink(mech)):
+        jumps = shared and is_of_port(mech, j) and y.mode[j // 2] == STICK and may_share(mech, j // 2)
         if jumps or not is_smooth(mech, k, j, y, st):
             continue
-        fine = is_slip(j, y) or is_open(mech, j - 2 * y.mode.shape[0])
+        fine = is_slip(mech, j, y) or is_open(mech, j - first_joint(mech))
         hair = 10.0 * grain(mech, out, j, y) if fine else out.hair * size_of_force(mech, k, out, j, y)
         if not fine:
             # in a short step forces of stages are round-off of velocities over the step

@@ -8,6 +8,7 @@ from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.formulas.crossing import evaluate, first_crossing, narrowed
 from fricmb.integrate.implicit.equations.forces import is_open
 from fricmb.integrate.implicit.events.event_functions import gaps, grain, port_trigger, triggers, violated
+from fricmb.integrate.implicit.events.trigger_places import first_joint, is_of_port
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.scene.control import Control
 from fricmb.integrate.implicit.scene.moving import Moving
@@ -91,9 +92,9 @@ def by_series(mech: Mech, k: Moving, end: State, st: Stages, out: Watch, j: int,
 
 
 @kernel
-def is_load(j: int, y: State) -> bool:
+def is_load(mech: Mech, j: int) -> bool:
     """Whether trigger j is the load of a contact: by Hertz it is next to nothing long before it is 0."""
-    return bool(j < 2 * y.mode.shape[0] and j % 2 == 1)
+    return is_of_port(mech, j) and j % 2 == 1
 
 
 @kernel
@@ -112,8 +113,8 @@ def locate_trigger(
         gaps(mech, k, y.t, y.q, y.v, y.lam, out)
     triggers(mech, k, out, y.mode, y.n, y.F, y.N, y.g, y.lam, True)
     j = first
-    n_slips = 2 * y.mode.shape[0]
-    opens = out.rate[first - n_slips] if is_open(mech, first - n_slips) else 0.0
+    joints = first_joint(mech)
+    opens = out.rate[first - joints] if is_open(mech, first - joints) else 0.0
     low, f_low = 0.0, max(out.trigger[j], 0.0)
     if out.opened > 0:
         gaps(mech, k, end.t, end.q, end.v, end.lam, out)
@@ -123,13 +124,13 @@ def locate_trigger(
     step = h
     left = np.inf
     # where friction ends or begins; loads that set in or bend are found from both sides
-    exact = (first < n_slips and first % 2 == 0) or is_open(mech, first - n_slips)
+    exact = (is_of_port(mech, first) and first % 2 == 0) or is_open(mech, first - joints)
     guess, slope = by_polynomial(st, out, first, h) if inside >= 1.0 and exact else (-1.0, 0.0)
-    if is_open(mech, first - n_slips) and out.inner[0, first] <= 10.0 * grain(mech, out, first, y):
+    if is_open(mech, first - joints) and out.inner[0, first] <= 10.0 * grain(mech, out, first, y):
         guess, slope = from_touch(st, out, first, h, opens), 0.0
     of_series = has_series(st)
     for i in range(80):
-        root = by_series(mech, k, end, st, out, j, low, high) if of_series and j < n_slips else -1.0
+        root = by_series(mech, k, end, st, out, j, low, high) if of_series and is_of_port(mech, j) else -1.0
         if root > 0.0:
             guess, slope = root, 0.0
         gap = f_low - f_high
@@ -162,12 +163,12 @@ def locate_trigger(
             j = worst
             high, f_high, f_low = step, min(out.trigger[j], 0.0), 0.0
             continue
-        if is_load(j, y) and not of_series:
+        if is_load(mech, j) and not of_series:
             limit = 0.0
         if abs(value) <= limit or high - low <= 8.0 * EPS * max(abs(y.t), abs(h)):
             break
-        if is_open(mech, j - n_slips):
-            slope = out.rate[j - n_slips]
+        if is_open(mech, j - joints):
+            slope = out.rate[j - joints]
         elif j != first or abs(value) > BETTER * left:
             slope = 0.0
         left, guess = abs(value), (step - value / slope if slope < 0.0 else -1.0)

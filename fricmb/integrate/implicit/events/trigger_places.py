@@ -26,9 +26,3 @@ def first_kink(mech: Mech) -> int:
 def is_of_port(mech: Mech, j: int) -> bool:
     """Whether trigger j is one of a port: of port j // 2."""
     return bool(0 <= j < first_joint(mech))
-
-
-@kernel
-def changes_modes(mech: Mech, j: int) -> bool:
-    """Whether a mode ends where trigger j falls below 0."""
-    return bool(0 <= j < first_kink(mech))

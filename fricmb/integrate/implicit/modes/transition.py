@@ -10,6 +10,7 @@ from fricmb.integrate.implicit.equations.instant_matrix import NONE, instant_mat
 from fricmb.integrate.implicit.equations.projection import project_velocities
 from fricmb.integrate.implicit.equations.singular_position import start_watch
 from fricmb.integrate.implicit.equations.slip_rows import lack, plane
+from fricmb.integrate.implicit.events.trigger_places import first_joint, is_of_port
 from fricmb.integrate.implicit.modes.load_share import give_way, join_rest
 from fricmb.integrate.implicit.modes.mode_decision import decide
 from fricmb.integrate.implicit.modes.mode_enumeration import FOUND, SEVERAL
@@ -160,10 +161,10 @@ def change_modes(
 ) -> int:
     """Go through the transition of trigger j (-1: a breakpoint): modes together with reactions, events."""
     n_c, row = y.mode.shape[0], mech.port.row
-    turn_with_slip(mech, k, y, out.top_slip, j // 2 if j < 2 * n_c else -1)
+    turn_with_slip(mech, k, y, out.top_slip, j // 2 if is_of_port(mech, j) else -1)
     copy_state(y, before)
-    if j >= 2 * n_c:
-        code = let_go(mech, k, w, y, out, j - 2 * n_c)
+    if j >= first_joint(mech):
+        code = let_go(mech, k, w, y, out, j - first_joint(mech))
         if code != DONE:
             return code
     set_window(c, k.s.window, y.t)
@@ -175,7 +176,7 @@ def change_modes(
         if y.mode[i] == SLIP and magnitude(row, i, y.g) <= max(1e-11 * out.top_slip, out.slow) and bears(mech, k, y, i):
             part[i] = ARRIVES
     forced = -1
-    if 0 <= j < 2 * n_c:
+    if is_of_port(mech, j):
         port = j // 2
         if j % 2 == 1:
             y.mode[port] = SLIP if y.mode[port] == OPEN else OPEN
