@@ -246,7 +246,7 @@ class Events(Sequence[Event]):
 
     @property
     def is_transition(self) -> NDArray[np.bool_]:
-        """Whether each event (n_events,) is a transition of a contact."""
+        """Whether each event (n_events,) is one of a contact or an impact, and not one that a user has asked for."""
         found: NDArray[np.bool_] = self._kind != KINDS.index(ASKED)
         return found
 

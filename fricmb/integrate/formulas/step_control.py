@@ -1,8 +1,8 @@
 """How long the next step may be: the formula, and the ladder of step sizes.
 
-Who takes or rejects a step sets the bounds of its growth: ``implicit/attempt_step`` (5: ``radau``, ``bdf`` around
-transitions), ``backward_differences.GROWTH`` (3: ``bdf``).  Behind a failure ``next_step`` holds growth back in the
-first; steps of BDF grow only after k + 1 equal ones anyhow.
+Who takes or rejects a step sets bounds: ``implicit/attempt_step`` (``radau``, ``bdf`` around transitions: ``GROWTH``,
+``CUT`` and the like) and ``backward_differences`` (``bdf``: ``GROWTH``).  After a failure ``next_step`` holds growth
+back in the former; steps of BDF grow only after k + 1 equal ones anyhow.
 
 The other methods ask the same formula: ``collocation/one_contact/run.length_factor`` (growth up to 3),
 ``taylor/step_start`` (1.5).
@@ -69,11 +69,9 @@ class Pace(Protocol):
 def next_step(c: Pace, h: float, wanted: float) -> float:
     """The step after an accepted one of length ``h`` whose error alone would let it be ``wanted``.
 
-    What a step has failed at lies ahead of the next ones, too: after a failure, where ``growth`` is set to 1, it
-    becomes half as large again with every step taken; behind a transition it is free again.  Steps on an exact
-    structure keep ``growth`` infinite: one that fails there costs no more than one that does not.  (Without
-    this each accurate step was followed by one that is far too long.  Where that shows only when its equations do not
-    converge, it costs several times as much as a step.)
+    What a step has failed at lies ahead of the next ones, too: a failure sets ``growth`` to 1, every accepted step
+    makes it half as large again, and a transition sets it to infinity.  Without this each accurate step was followed
+    by one that is far too long, which costs several times as much where its equations do not converge.
     """
     allowed = h * c.growth
     c.growth *= 1.5

@@ -135,10 +135,10 @@ def arrive(
 
 @kernel
 def set_restart(mech: Mech, c: Control, y: State, lets_go: bool) -> None:
-    """First step behind a change of modes: no longer than the last that began slip, where something ``lets_go``.
+    """First step behind a change of modes: at least RESTART of the time in which velocities change.
 
-    And longer than that before it, if that is a trifle: slip that came to rest there asked for that.  Steps get as
-    short as round-off on the way to rest, and Newton's changes at such ones are nothing else.
+    Steps get as short as round-off on the way to rest, and Newton's changes at such ones are nothing else.  Where
+    something ``lets_go`` it is at most the step that was right for that the last time.
     """
     rate = weighed(mech, y.a)
     if rate > 0.0:
@@ -148,9 +148,14 @@ def set_restart(mech: Mech, c: Control, y: State, lets_go: bool) -> None:
     c.sets_out = 1 if lets_go else 0
 
 
+#: What a step may grow by; part to which one is cut at least, whose error is too large; that of one that could not be
+#: solved; least part of the step behind one that was taken.
+GROWTH, CUT, UNSOLVED, SHRINK = 5.0, 0.2, 0.4, 0.3
+
+
 @kernel
-def reject(c: Control, h: float) -> int:
-    """Leave the state where it is; the next step is h, and those behind it grow slowly."""
+def try_again(c: Control, h: float) -> int:
+    """Leave the state where it is: the step tried next is h, and those behind it grow slowly."""
     c.counts[1] += 1
     c.h = h
     c.growth = 1.0
@@ -263,8 +268,8 @@ def attempt_step(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,
     rec: Record, part: Codes, stop: float,
 ) -> int:  # fmt: skip
-    """A step of Radau IIA from y, not beyond ``stop``: ACCEPTED, REJECTED, CHANGED, or why the run ends."""
-    order = st.tab.c.shape[0]
+    """A step of the one-step formula from y, not beyond ``stop``: ACCEPTED, REJECTED, CHANGED, or why the run ends."""
+    stages = st.tab.c.shape[0]  # the estimated error goes with this power of the step
     t = y.t
     before_knot = t < c.knot < stop
     goal = c.knot if before_knot else stop
@@ -294,7 +299,7 @@ def attempt_step(
         # forces of a step that is short beside round-off are no start for a shorter one: what is known at y is
         c.last_h = 0.0
         c.counts[5] += 1
-        return reject(c, h if takes_slopes(c, st) else 0.4 * h)
+        return try_again(c, h if takes_slopes(c, st) else UNSOLVED * h)
     bring_up_to_date(mech, k, y, st, h)
     find_kinks(mech, k, y, st, out)
     weigh_ports(mech, k, y, st, c, h)
@@ -306,40 +311,40 @@ def attempt_step(
     if mech.bends.address.shape[0] > 0:
         knot = min(knot, bend_within(mech, k, y, st, c, h, SLIGHT))
     error = max(error_of(c, y, st, h), between / asked(c))
-    error = max(error, too_long(growth_of_slip(mech, k, y, st, h), order), unseen_force(mech, k, y, st, c, h))
+    error = max(error, too_long(growth_of_slip(mech, k, y, st, h), stages), unseen_force(mech, k, y, st, c, h))
     if mech.elements.address.shape[0] > 0:
         error = max(error, jump_error(mech, k, y, st, c, st.scale, h))
     if not error < 1e300:
-        return reject(c, 0.4 * h)
-    factor = step_factor(error, order, ONE_STEP_SAFETY)
+        return try_again(c, UNSOLVED * h)
+    factor = step_factor(error, stages, ONE_STEP_SAFETY)
     if knot < 1.0 and (error <= 1.0 or knot < factor):
         c.knot = t + knot * h
         if not c.knot > t:
             # a bend so near that no step ends before it: asked for again it would be as near
             c.knot = -np.inf
             return decide_anew(mech, k, w, y, before, c, out, rec, part) if leaves_bend(mech, k, y) else FAIL_STEP
-        return reject(c, h)
+        return try_again(c, h)
     if error > 1.0:
-        return reject(c, h * max(0.2, factor))
+        return try_again(c, h * max(CUT, factor))
     if not end_step(mech, k, w, y, end, st, c, h):
-        return reject(c, 0.4 * h)
+        return try_again(c, UNSOLVED * h)
     if may_have_passed(mech, k, w, end, out, h):
-        return reject(c, 0.5 * h)
+        return try_again(c, 0.5 * h)
     if margins(mech, k, w, end, out, False) <= 0.0:
         h = last_unique(mech, k, w, y, end, st, c, out, h)
         if h > 0.0:
             record_step(mech, rec, y, end, st, c, h)
             copy_state(end, y)
         return FAIL_MARGIN
-    worst = violated(mech, k, w, out, y, end, st)
+    trigger = violated(mech, k, w, out, y, end, st)
     whole = h
-    if worst >= 0:
-        h, worst = locate_trigger(mech, k, w, y, end, st, c, out, h, worst)
+    if trigger >= 0:
+        h, trigger = locate_trigger(mech, k, w, y, end, st, c, out, h, trigger)
         if h == 0.0:
-            return reject(c, 0.3 * c.h)
+            return try_again(c, 0.3 * c.h)
         may_have_passed(mech, k, w, end, out, h)
     else:
-        worst = has_come_to_rest(mech, k, out, y, end)
+        trigger = has_come_to_rest(mech, k, out, y, end)
     record_step(mech, rec, y, end, st, c, h)
     if h == left:
         end.t = goal
@@ -348,8 +353,8 @@ def attempt_step(
     copy_state(end, y)
     grow(mech, c, out, k, y)
     c.wanted = max(h, c.h)
-    if worst < 0 and (h < left or factor < 1.0):
-        c.wanted = h * min(5.0, max(0.3, factor))
+    if trigger < 0 and (h < left or factor < 1.0):
+        c.wanted = h * min(GROWTH, max(SHRINK, factor))
         taken = h
         if h < IN_VAIN * whole:
             # cut where a polynomial had something vanish at once that does not: the next one need not be as short
@@ -360,27 +365,27 @@ def attempt_step(
         c.sets_out = 0
     if near_singular(c, out, h):
         return FAIL_SINGULAR
-    if worst >= first_kink(mech):
+    if trigger >= first_kink(mech):
         # a load that has a kink: nothing changes but the polynomials
         c.last_h = 0.0
         c.made = 0.0
         return ACCEPTED
-    if worst < 0 and before_knot and h == left:
+    if trigger < 0 and before_knot and h == left:
         c.knot = -np.inf
         c.last_h = 0.0
         c.growth = np.inf
         if leaves_bend(mech, k, y):
             return decide_anew(mech, k, w, y, before, c, out, rec, part)
         return CHANGED
-    if worst >= 0 and is_round_off(c, h, t) and leaves_bend(mech, k, y):
+    if trigger >= 0 and is_round_off(c, h, t) and leaves_bend(mech, k, y):
         # what comes to its limit at once does so behind the bend that y has stood before
         return get_away(mech, k, w, y, before, c, out, rec, part)
-    if worst >= 0:
+    if trigger >= 0:
         c.knot = -np.inf
         rec.after[rec.used[0] - 1] = 1
         c.growth = np.inf
-        lets_go = is_of_port(mech, worst) and y.mode[worst // 2] == STICK
-        code = change_modes(mech, k, w, y, before, c, out, rec, part, worst)
+        lets_go = is_of_port(mech, trigger) and y.mode[trigger // 2] == STICK
+        code = change_modes(mech, k, w, y, before, c, out, rec, part, trigger)
         set_restart(mech, c, y, lets_go)
         return CHANGED if code == DONE else code
     return ACCEPTED

@@ -1,4 +1,4 @@
-"""A run of a mechanism from its start to a trajectory."""
+"""A run of the implicit driver from its start to a trajectory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Events of a run: changes of modes, as they are told."""
+"""Changes of modes, recorded as events."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from fricmb.integrate.problem import (
 )
 from fricmb.integrate.run.room_protocols import Events, Laws, Modes
 
-#: Part of the time within which transitions are one instant (how near they are located says ``locate``).
+#: Part of the time within which transitions are one instant (how near they are located: ``locate_trigger``).
 SAME_INSTANT = 1e-14
 
 

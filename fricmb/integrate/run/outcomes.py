@@ -4,7 +4,8 @@ from __future__ import annotations
 
 #: A loop that comes back since its slice is over, to be called again; a step that is left to the other of two methods.
 SLICE_OVER, HANDOVER = -2, -1
-#: A step that was accepted or rejected, one that ended with a transition; the run is done, the space for rows is full.
+#: A step that was accepted or rejected, one behind which the past is no guide (a transition, a breakpoint, a bend);
+#: the run is done, the space for rows is full.
 ACCEPTED, REJECTED, CHANGED, DONE, FULL = range(5)
 #: Why a run cannot go on.
 FAIL_STEP, FAIL_MODES, FAIL_CHATTER, FAIL_INFINITE = range(5, 9)

@@ -121,7 +121,7 @@ def bring_forward(past: Differences, i: int) -> None:
 
 @kernel
 def count_step(past: Differences) -> None:
-    """Count an accepted step."""
+    """Count a step whose error has passed."""
     past.equal += 1
     past.rejections = 0
     past.since += 1

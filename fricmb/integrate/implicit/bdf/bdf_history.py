@@ -1,4 +1,4 @@
-"""The history of a BDF run of a mechanism: backward differences at equal steps of all that a step predicts."""
+"""The history of a BDF run: backward differences at equal steps of all that a step predicts."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from fricmb.integrate.problem import Floats, Floats2, Problem, Start
 
 
 class Formula(Layout):
-    """What a BDF step of a mechanism needs beside the differences of y = [q, v, z, powers, lam, F, N, g].
+    """What a BDF step needs beside the differences of y = [q, v, z, powers, lam, F, N, g].
 
     ``base`` holds psi: the step is one stage of length h/gamma from there, ``one``; ``made`` step of the factors,
     0: none that serve.  ``usual`` what the one-step method would step; ``origin``, ``reach`` (n,) where the run began

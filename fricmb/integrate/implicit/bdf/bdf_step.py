@@ -161,7 +161,7 @@ def scaled(y: State, c: Control, past: Differences, formula: Formula, error: Flo
 
 @kernel
 def update(past: Differences, formula: Formula) -> None:
-    """Bring the differences to the end of the step, whose correction is ``d``."""
+    """Bring the differences to the end of the step, whose correction is ``d``; it may still be handed over."""
     for i in range(past.D.shape[1]):
         bring_forward(past, i)
     count_step(past)

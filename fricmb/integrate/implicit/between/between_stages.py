@@ -1,4 +1,4 @@
-"""What laws of friction do between the stages of a step: all that ``step`` asks, of ports of a mechanism.
+"""What laws of friction do between the stages of a step: all that ``attempt_step`` and ``attempt_bdf_step`` ask.
 
 Forces count by what they do without (other) joints: bodies are heavier with them.
 """

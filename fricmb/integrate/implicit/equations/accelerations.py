@@ -1,4 +1,4 @@
-"""The state of a run, and everything at one instant: reactions, friction forces and accelerations together."""
+"""Accelerations, reactions and friction forces at one instant, found together."""
 
 from __future__ import annotations
 

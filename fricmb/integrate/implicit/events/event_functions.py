@@ -1,4 +1,4 @@
-"""Functions that fall below 0 where a mode ends, and which of them does so in a step."""
+"""Functions that fall below 0 where a mode ends or a load has a kink, and which of them does so in a step."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats
 from fricmb.integrate.run.breakpoints import EPS
 
-#: Forces at the stages are of lower order than velocities: this part of their size, between them, is no sign, times the
-#: tolerance (Newton leaves a fiftieth of that), but from 1e-5 on no more than ROUGHEST, lest excursions be lost.
+#: Between the stages a force below 0 by less than this part of its size counts as 0: ROUGH times the tolerance, of
+#: which Newton leaves a fiftieth, but at least FINEST, and at most ROUGHEST, lest excursions be lost.
 ROUGH, ROUGHEST, FINEST = 0.05, 5e-7, 1e-10
 
 
@@ -100,9 +100,9 @@ def triggers(
     mech: Mech, k: Moving, out: Watch, mode: Codes, direction: Floats, F: Floats, N: Floats, g: Floats, lam: Floats,
     at_end: bool,
 ) -> None:  # fmt: skip
-    """Functions that fall below 0 where a mode ends: two a port, one a joint (open joints: at the end of steps).
+    """Two functions a port and one a joint, which fall below 0 where a mode ends, and one a port that does at a kink.
 
-    Behind them one a port whose load has a kink in the present step.  Slip almost without load may turn as it likes.
+    That of an open joint is its distance, at the end of a step.  Slip almost without load may turn as it likes.
     """
     joint, joints, kinks = mech.joint, first_joint(mech), first_kink(mech)
     for j in range(joints):
@@ -131,7 +131,10 @@ def is_slip(mech: Mech, j: int, y: State) -> bool:
 
 @kernel
 def grain(mech: Mech, out: Watch, j: int, y: State) -> float:
-    """Round-off of trigger j: of a slip velocity, a distance or a force."""
+    """Below this trigger j counts as 0, and its location ends: round-off of a distance, of a slip or of a force.
+
+    Of the last two it is that of the largest of the run so far.
+    """
     joints = first_joint(mech)
     if is_slip(mech, j, y):
         return float(1e-13 * out.top_slip)
@@ -205,7 +208,7 @@ def is_smooth(mech: Mech, k: Moving, j: int, y: State, st: Stages) -> bool:
 
 @kernel
 def size_of_force(mech: Mech, k: Moving, out: Watch, j: int, y: State) -> float:
-    """What the force of trigger j is measured by: the limit of a port that sticks, else the largest force."""
+    """What the force of trigger j is measured by: what friction of its port can hold, else the largest of the run."""
     c = j // 2
     if is_of_port(mech, j) and j % 2 == 0:
         return stick_limit(mech.port, mech.port.laws, c, k.s, max(y.N[c], 0.0))

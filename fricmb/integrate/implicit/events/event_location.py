@@ -103,10 +103,10 @@ def locate_trigger(
 ) -> tuple[float, int]:
     """Length of the step that ends where the first trigger vanishes, and that trigger; ``end`` is left there.
 
-    Steps of variable length: by root and slope of the polynomial of the trigger, then by regula falsi (Illinois); a
-    step at whose end another trigger is below 0 replaces the upper bound.  What the polynomial alone shows is tried by
-    a step to there: trigger -1 where that finds nothing, and it is a step like any other.  Length 0 where a step could
-    not be made.
+    Steps of variable length: by root and slope of the polynomial of the trigger, then by regula falsi (Illinois), until
+    the trigger is within ``grain`` of 0 or the time within 8 roundings.  A step at whose end another trigger is below 0
+    replaces the upper bound.  A dip that the polynomial alone shows is tried by a shorter step; one that shows none is
+    returned with trigger -1.  Length 0 where a step could not be made.
     """
     inside = out.where
     if out.opened > 0:

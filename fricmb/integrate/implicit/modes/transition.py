@@ -159,7 +159,7 @@ def change_modes(
     part: Codes,
     j: int,
 ) -> int:
-    """Go through the transition of trigger j (-1: a breakpoint): modes together with reactions, events."""
+    """Go through the transition of trigger j, or decide modes anew (-1): modes together with reactions, events."""
     n_c, row = y.mode.shape[0], mech.port.row
     turn_with_slip(mech, k, y, out.top_slip, j // 2 if is_of_port(mech, j) else -1)
     copy_state(y, before)

@@ -1,4 +1,4 @@
-"""A run of a mechanism: polynomials of steps, forces and reactions found again at any time."""
+"""What a run has left: polynomials of steps, forces and reactions found again at any time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The state of a mechanism at one instant, and space for its accelerations and reactions."""
+"""The state of a scene at one instant, and space for its accelerations and reactions."""
 
 from __future__ import annotations
 

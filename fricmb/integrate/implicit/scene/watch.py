@@ -1,4 +1,4 @@
-"""What is watched along a run of a scene with joints: space for margins, triggers and the nearest singular position."""
+"""What the implicit driver watches along a run: space for margins, triggers and the nearest singular position."""
 
 from __future__ import annotations
 
