@@ -22,6 +22,7 @@ from fricmb.equations._facts import ElementFacts, element_facts
 from fricmb.equations._groups import Group, element_groups
 from fricmb.equations._store import folder, function
 from fricmb.equations._templates import (
+    SwitchFormulas,
     Template,
     bend_template,
     derivations,
@@ -53,6 +54,7 @@ __all__ = [
     "ForceTerms",
     "Group",
     "Signal",
+    "SwitchFormulas",
     "Template",
     "bend_expression",
     "bend_template",

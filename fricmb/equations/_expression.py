@@ -122,7 +122,10 @@ def switching_functions(value: Any) -> list[Any]:
 
 
 def switches(value: Any, t: Any, parameters: Sequence[Any]) -> list[dict[str, Any]]:
-    """Where an expression of time switches: the function that changes sign, and the instant or a tape to search by."""
+    """Where an expression of t (time or slip speed) switches: what changes sign, and the place or a tape to search by.
+
+    Functions of anything else than t and the parameters are left out.
+    """
     found: list[dict[str, Any]] = []
     for function in switching_functions(value):
         if t not in function.free_symbols or function.free_symbols - {t, *parameters}:

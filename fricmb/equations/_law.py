@@ -24,7 +24,8 @@ def derive_coefficient(
     """Facts and kernel of a coefficient ``mu(r, N)``: out = [mu, dmu/dr, dmu/dN].
 
     ``constant`` lists conditions under which the coefficient does not depend on r and N: every expression of the
-    first group 0, or any single one of the second.  ``switches``: by what slip speed the formula goes over to another.
+    first group 0, or any single one of the second.  ``switches``: by what slip speed the formula goes over to another;
+    ``switches_by_load``: the same where that speed depends on N, which stands behind the parameters.
     """
     mu = sympy.sympify(mu)
     at_rest = _at_rest(mu, r)
@@ -36,6 +37,7 @@ def derive_coefficient(
     if not mu.free_symbols & {r, N}:
         return facts | {"kind": "constant"}, None
     facts["switches"] = switches(mu, r, parameters)
+    facts["switches_by_load"] = [s for s in switches(mu, r, [*parameters, N]) if s not in facts["switches"]]
     facts["all_zero"] = [parameter_source(f, parameters) for f in split(mu, [], [r, N], 0).factors]
     slopes = [sympy.diff(mu, r), sympy.diff(mu, N)]
     facts["any_zero"] = [

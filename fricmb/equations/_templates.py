@@ -33,6 +33,8 @@ def _compiled(function: Callable[..., None]) -> Any:
 
 
 Entries = tuple[tuple[int, int, float], ...]
+#: Where an expression switches: the place, or None where it has to be searched; what changes its sign; its bounds.
+SwitchFormulas = tuple[Callable[..., float] | None, Callable[..., float], tuple[Entry, ...] | None]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,18 +131,26 @@ class Template:
         return lambda p: all(v == 0.0 for v in every(p)) or any(v == 0.0 for v in single(p))
 
     @cached_property
-    def instants(self) -> list[tuple[Callable[..., float] | None, Callable[..., float], tuple[Entry, ...] | None]]:
+    def instants(self) -> list[SwitchFormulas]:
         """Of a signal: instants of its switches (None where they have to be searched), what switches, its bounds.
 
         Of a coefficient: the same, of slip speed in place of time.
         """
+        return self._switches("switches")
+
+    @cached_property
+    def instants_by_load(self) -> list[SwitchFormulas]:
+        """Of a coefficient: as :attr:`instants`, of those that depend on the normal force, behind the parameters."""
+        return self._switches("switches_by_load")
+
+    def _switches(self, name: str) -> list[SwitchFormulas]:
         return [
             (
                 None if s["instant"] is None else formula(s["instant"]),
                 formula(s["function"]),
                 None if s.get("tape") is None else tuple(map(tuple, s["tape"])),
             )
-            for s in self.facts.get("switches", [])
+            for s in self.facts.get(name, [])
         ]
 
 

@@ -160,8 +160,9 @@ class FrictionLaw(Regimes, Declaration):
     def knots(self) -> tuple[float, ...]:
         """Slip speeds at which the slope of the coefficient bends; of a smooth curve none.
 
-        Steps end there where that matters.  Where a formula goes over to another one is found from the formula; an own
-        law overrides this to state what else is narrow and far from rest, such as the place of a peak.
+        Steps end there where that matters.  Where a formula goes over to another one is found from the formula, unless
+        that depends on a normal force that varies; an own law overrides this to state what else is narrow and far from
+        rest, such as the place of a peak.
         """
         return ()
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fricmb.equations import Template
+from fricmb.equations import SwitchFormulas, Template
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.signals.jets import Entry
 from fricmb.integrate.signals.sign_changes import stretches
@@ -23,7 +23,7 @@ NOWHERE = np.zeros(0)
 
 @dataclass(frozen=True)
 class Switch:
-    """A function of time that switches an expression where it changes sign; of the parameters followed by time."""
+    """A function of time, or of slip speed, at whose sign changes an expression switches; parameters come first."""
 
     function: Callable[[Sequence[float]], float]
     parameters: tuple[float, ...]
@@ -81,10 +81,17 @@ class Switch:
 
 def switches_of(timed: Sequence[tuple[Template, tuple[float, ...]]]) -> tuple[Floats, tuple[Switch, ...]]:
     """Known instants of the given expressions, rising, and the functions whose sign changes must be searched."""
+    return places_of([(template.instants, parameters) for template, parameters in timed])
+
+
+def places_of(
+    stated: Sequence[tuple[Sequence[SwitchFormulas], tuple[float, ...]]],
+) -> tuple[Floats, tuple[Switch, ...]]:
+    """As :func:`switches_of`, of formulas with their parameters."""
     known: set[float] = set()
     searched = []
-    for template, parameters in timed:
-        for instant, function, tape in template.instants:
+    for formulas, parameters in stated:
+        for instant, function, tape in formulas:
             if instant is None:
                 searched.append(Switch(function, parameters, tape))
                 continue

@@ -171,7 +171,9 @@ class ContactArrays:
         self.states.append(labels)
         self.lean.append(0.0 if compiled or not law.offsets() else float(law.numeric().lean()))
         constant = template.is_constant(p)
-        self.knots.append(() if constant or template.facts["kind"] == "smooth" else knots_of(law, template, p))
+        bends = not constant and template.facts["kind"] != "smooth"
+        load = normal if self.normal[-1] == NORMAL_CONSTANT else None
+        self.knots.append(knots_of(law, template, p, load) if bends else ())
         if not constant:
             try_law(law, f"{type(contact).__name__} {contact.name!r}", template, p, d, len(labels))
         if template.facts["kind"] == "smooth":

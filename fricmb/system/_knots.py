@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fricmb.equations import Template
-from fricmb.system._breakpoints import Switch, switches_of
+from fricmb.system._breakpoints import Switch, places_of
 
 #: Speeds among which switches are looked for that cannot be computed, in powers of ten, and how many to a power.
 _POWERS, _EACH = (-9, 7), 16
@@ -16,12 +16,16 @@ _POWERS, _EACH = (-9, 7), 16
 _MOST = 10_000
 
 
-def knots_of(law: Any, template: Template, p: Sequence[float]) -> tuple[float, ...]:
-    """Those that the law states (``knots``) and those at which its formula switches, rising, above 0."""
-    stated = law.numeric().knots()
-    if not (stated or template.instants):
+def knots_of(law: Any, template: Template, p: Sequence[float], N: float | None) -> tuple[float, ...]:
+    """Those that the law states (``knots``) and those at which its formula switches, rising, above 0.
+
+    ``N``: the normal force, on which they may depend; None where it varies, and these are left out.
+    """
+    stated, by_load = law.numeric().knots(), [] if N is None else template.instants_by_load
+    if not (stated or template.instants or by_load):
         return ()
-    known, searched = switches_of([(template, tuple(p))])
+    own = tuple(p)
+    known, searched = places_of([(template.instants, own), (by_load, (*own, 0.0 if N is None else N))])
     found = {*map(float, stated), *known.tolist(), *(r for s in searched for r in _roots(s))}
     above = sorted(r for r in found if 0.0 < r < np.inf)
     return tuple(above) if len(above) <= _MOST else ()

@@ -200,3 +200,55 @@ def test_formulas_tell_their_own_bends():
             return self.mu_s / 2 + steep / 10 + sympy.Min(sympy.log(1 + r), 1) / 1000
 
     assert knots_of(Several(mu_s=1.4, v_0=0.25)) == pytest.approx([0.25, 0.5, np.e - 1], rel=1e-12)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadedCorner(fm.FrictionLaw):
+    """Constant up to a slip speed that is in proportion to the load, and rising from there."""
+
+    mu: float
+    per_load: float
+    rise: float
+
+    def define_coefficient(self, r, N):
+        corner = self.per_load * N
+        return sympy.Piecewise((self.mu, r < corner), (self.mu + self.rise * (r - corner), True))
+
+
+def thrown(normal_force, axes="x"):
+    """A block on a spring, thrown over the ground."""
+    block = fm.Body("block", mass=1.0, axes=axes, velocity={"x": 3.0})
+    law = LoadedCorner(mu=0.1, per_load=0.5, rise=0.3)
+    spring = fm.Spring("spring", block, axis="x", stiffness=4.0)
+    return fm.Scene("thrown", [block, spring, fm.Contact("sole", block, axes="x", law=law, normal_force=normal_force)])
+
+
+@pytest.mark.parametrize("method", ["auto", "radau", "bdf"])
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])
+def test_a_bend_whose_place_depends_on_a_constant_load(method, rtol):
+    """m = 1, k = 4, N = 2: above v = 1 friction is 2 (0.1 + 0.3 (v - 1)), below 0.2; each piece by itself."""
+
+    def fast(t, y):
+        return [y[1], -4.0 * y[0] - 0.2 - 0.6 * (y[1] - 1.0)]
+
+    def slow(t, y):
+        return [y[1], -4.0 * y[0] - 0.2]
+
+    def corner(t, y):
+        return y[1] - 1.0
+
+    corner.terminal = True
+    exact = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-14, "dense_output": True}
+    first = solve_ivp(fast, (0.0, 1.0), [0.0, 3.0], events=corner, **exact)
+    second = solve_ivp(slow, (first.t[-1], 0.65), first.y[:, -1], **exact)
+    grid = np.linspace(0.0, 0.65, 131)
+    found = np.where(grid < first.t[-1], first.sol(grid), second.sol(grid))
+    sol = fm.simulate(thrown(2.0), t_end=0.65, t_eval=grid, rtol=rtol, method=method)
+    assert second.y[1, -1] > 0.0
+    assert np.abs(np.vstack([sol.q, sol.v]) - found).max() < 3.0 * rtol
+
+
+def test_bends_that_depend_on_the_load_are_known_where_it_is_constant():
+    assert build(thrown(2.0)).problem.contacts.knots == pytest.approx([1.0], abs=1e-15)
+    pressed = thrown(fm.normal.Spring(axis="y", stiffness=1.0, preload=2.0), axes="xy")
+    assert build(pressed).problem.contacts.knots.size == 0
