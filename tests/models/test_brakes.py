@@ -78,10 +78,11 @@ def test_the_friction_of_all_contacts_slows_the_rotor():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("numbers", [(3, 4, 2), (3, 4, 3), (3, 4, 4), (6, 8, 6)])
-def test_braking_to_a_standstill(numbers):
+@pytest.mark.parametrize("rtol", [9.5e-6, 1e-5, 1.1e-5])  # transitions meet otherwise at each
+def test_braking_to_a_standstill(numbers, rtol):
     """Points of the pad land together, are nearly redundant, and release one another: the run goes through that."""
     scene = fm.models.pad_rotor(*numbers, speed=0.2, mu_s=0.5, mu_k=0.4)
-    sol = fm.simulate(scene, t_end=0.025, rtol=1e-5, method="radau")
+    sol = fm.simulate(scene, t_end=0.025, rtol=rtol, method="radau")
     turning = sol.velocity("rotor.mode1")
     assert np.abs(sol.energy.residual).max() < 1e-7
     # a rigid brake stops after v J/(mu N r^2)
@@ -91,10 +92,7 @@ def test_braking_to_a_standstill(numbers):
     assert np.abs(turning[sol.t > 0.015]).max() < 0.15 * turning[0]
     for contact in scene.contacts:
         force, mode = np.hypot(*sol.force(contact.name)) / contact.normal_force, sol.mode(contact.name)
-        over = np.flatnonzero((mode == 0) & (force > 0.5 * (1 + 1e-6)))
-        # while another contact lands, a force may rise to its limit within the round-off of time: it ends there
-        assert np.all(force[over - 1] < 0.5)
-        assert np.all(sol.t[over] - sol.t[over - 1] <= 1e-12 * sol.t[-1])
+        assert force[mode == 0].max() < 0.5 * (1 + 1e-7)
         np.testing.assert_allclose(force[mode == 1], 0.4, rtol=1e-9)
         assert np.hypot(*sol.relative_velocity(contact.name))[mode == 0].max() < 1e-11
 
