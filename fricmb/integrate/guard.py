@@ -20,6 +20,10 @@ class Guard(Integrator):
     #: Who does such a run.
     reserve: ClassVar[type[Integrator]] = Radau
 
+    def leaves(self, problem: Problem, span: float, rtol: float) -> str | None:
+        """Why a run over a span is left to the reserve before it begins, or None."""
+        return None
+
     def integrate(
         self,
         problem: Problem,
@@ -34,13 +38,16 @@ class Guard(Integrator):
     ) -> Trajectory:
         """See :class:`Integrator`."""
         options: dict[str, Any] = {"tolerance": tolerance, "t_eval": t_eval, "progress": progress, "memory": memory}
-        run = super().integrate(problem, start, t_end, **options)  # type: ignore[safe-super]  # that of the class behind
-        if run.failure is None or run.of_scene or ended() is not None:
-            return run
-        other = self.reserve()
-        why = f"{self.name} stopped at t = {run.end.t:.6g}: {run.failure}; {other.name} did the run"
+        other, why = self.reserve(), self.leaves(problem, t_end - start.t, tolerance.rtol)
+        notes: tuple[str, ...] = ()
+        if why is None:
+            run = super().integrate(problem, start, t_end, **options)  # type: ignore[safe-super]  # the class behind
+            if run.failure is None or run.of_scene or ended() is not None:
+                return run
+            why = f"{self.name} stopped at t = {run.end.t:.6g}: {run.failure}; {other.name} did the run"
+            notes = (why,)
         instead = other.integrate(problem, start, t_end, **options)
-        instead.counters = replace(instead.counters, notes=(*instead.counters.notes, why))
+        instead.counters = replace(instead.counters, notes=(*instead.counters.notes, *notes))
         instead.instead = (other.name, why)
         return instead
 
@@ -49,22 +56,7 @@ class Guard(Integrator):
 class Guarded(Guard, Collocation):
     """Collocation; in reserve the general method, which also does what exact steps would creep through."""
 
-    def integrate(
-        self,
-        problem: Problem,
-        start: Start,
-        t_end: float,
-        *,
-        tolerance: Tolerance,
-        step: float | None = None,
-        t_eval: Floats | None = None,
-        progress: Callable[[float], None] | None = None,
-        memory: float | None = None,
-    ) -> Trajectory:
-        """See :class:`Integrator`."""
-        options: dict[str, Any] = {"tolerance": tolerance, "t_eval": t_eval, "progress": progress, "memory": memory}
-        if not self.creeps(problem, t_end - start.t, tolerance.rtol):
-            return super().integrate(problem, start, t_end, **options)
-        run = self.reserve().integrate(problem, start, t_end, **options)
-        run.instead = ("radau", "damped parts far faster than all that rings: exact steps would follow them")
-        return run
+    def leaves(self, problem: Problem, span: float, rtol: float) -> str | None:
+        """See :class:`Guard`."""
+        creeps = self.creeps(problem, span, rtol)
+        return "damped parts far faster than all that rings: exact steps would follow them" if creeps else None

@@ -25,7 +25,7 @@ def knots_of(law: Any, template: Template, p: Sequence[float], N: float | None) 
     if not (stated or template.instants or by_load):
         return ()
     own = tuple(p)
-    known, searched = places_of([(template.instants, own), (by_load, (*own, 0.0 if N is None else N))])
+    known, searched = places_of([(template.instants, own), (by_load, (*own, N or 0.0))])
     found = {*map(float, stated), *known.tolist(), *(r for s in searched for r in _roots(s))}
     above = sorted(r for r in found if 0.0 < r < np.inf)
     return tuple(above) if len(above) <= _MOST else ()

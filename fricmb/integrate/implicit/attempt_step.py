@@ -263,6 +263,7 @@ def end_slips(
 #: Part of a step that is nothing beside it.
 IN_VAIN = 1e-6
 
+
 @block
 def attempt_step(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, before: State, st: Stages, c: Control, out: Watch,

@@ -9,7 +9,7 @@ from fricmb.integrate.implicit.equations.forces import call_joint, is_open, move
 from fricmb.integrate.implicit.equations.jacobian_layers import place_slope
 from fricmb.integrate.implicit.equations.slip_rows import lack, may_open, plane, slip_speed, spare
 from fricmb.integrate.implicit.events.load_kinks import BEFORE, BEHIND, law_side
-from fricmb.integrate.implicit.events.trigger_places import first_joint, first_kink, is_of_port
+from fricmb.integrate.implicit.events.trigger_places import first_joint, first_kink, is_gap, is_of_port
 from fricmb.integrate.implicit.modes.load_share import share_stages
 from fricmb.integrate.implicit.modes.loop_mobility import may_share
 from fricmb.integrate.implicit.scene.moving import Moving
@@ -135,11 +135,10 @@ def grain(mech: Mech, out: Watch, j: int, y: State) -> float:
 
     Of the last two it is that of the largest of the run so far.
     """
-    joints = first_joint(mech)
     if is_slip(mech, j, y):
         return float(1e-13 * out.top_slip)
-    if is_open(mech, j - joints):
-        return float(max(out.grain[j - joints], 1e-290))
+    if is_gap(mech, j):
+        return float(max(out.grain[j - first_joint(mech)], 1e-290))
     return float(1e-13 * out.top_force)
 
 
@@ -150,7 +149,7 @@ def violated(mech: Mech, k: Moving, w: Instant, out: Watch, y: State, end: State
     ``out.where`` is less than 1 where neither the end nor a stage shows it, but the polynomial through them does there.
     """
     s = st.tab.c.shape[0]
-    worst, least, first = -1, 0.0, first_joint(mech)
+    worst, least = -1, 0.0
     out.where = 1.0
     shared = share_stages(mech, k, w, y, end, st)
     triggers(mech, k, out, end.mode, end.n, y.F, y.N, y.g, y.lam, False)
@@ -167,7 +166,7 @@ def violated(mech: Mech, k: Moving, w: Instant, out: Watch, y: State, end: State
     for j in range(out.trigger.shape[0]):
         # forces of stages are of lower order, and in a short step the round-off of velocities over the step: at its end
         # those that follow from accelerations show by how much
-        rough = 0.0 if is_open(mech, j - first) else 2.0 * abs(out.trigger[j] - out.rough[j])
+        rough = 0.0 if is_gap(mech, j) else 2.0 * abs(out.trigger[j] - out.rough[j])
         limit = 10.0 * grain(mech, out, j, end)
         for i in range(s):
             value = out.inner[i + 1, j] + (rough if i < s - 1 else 0.0)
@@ -226,7 +225,7 @@ def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, share
         jumps = shared and is_of_port(mech, j) and y.mode[j // 2] == STICK and may_share(mech, j // 2)
         if jumps or not is_smooth(mech, k, j, y, st):
             continue
-        fine = is_slip(mech, j, y) or is_open(mech, j - first_joint(mech))
+        fine = is_slip(mech, j, y) or is_gap(mech, j)
         hair = 10.0 * grain(mech, out, j, y) if fine else out.hair * size_of_force(mech, k, out, j, y)
         if not fine:
             # in a short step forces of stages are round-off of velocities over the step

@@ -6,9 +6,8 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.formulas.crossing import evaluate, first_crossing, narrowed
-from fricmb.integrate.implicit.equations.forces import is_open
 from fricmb.integrate.implicit.events.event_functions import gaps, grain, port_trigger, triggers, violated
-from fricmb.integrate.implicit.events.trigger_places import first_joint, is_of_port
+from fricmb.integrate.implicit.events.trigger_places import first_joint, is_gap, is_of_port
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.scene.control import Control
 from fricmb.integrate.implicit.scene.moving import Moving
@@ -113,8 +112,7 @@ def locate_trigger(
         gaps(mech, k, y.t, y.q, y.v, y.lam, out)
     triggers(mech, k, out, y.mode, y.n, y.F, y.N, y.g, y.lam, True)
     j = first
-    joints = first_joint(mech)
-    opens = out.rate[first - joints] if is_open(mech, first - joints) else 0.0
+    opens = out.rate[first - first_joint(mech)] if is_gap(mech, first) else 0.0
     low, f_low = 0.0, max(out.trigger[j], 0.0)
     if out.opened > 0:
         gaps(mech, k, end.t, end.q, end.v, end.lam, out)
@@ -124,9 +122,9 @@ def locate_trigger(
     step = h
     left = np.inf
     # where friction ends or begins; loads that set in or bend are found from both sides
-    exact = (is_of_port(mech, first) and first % 2 == 0) or is_open(mech, first - joints)
+    exact = (is_of_port(mech, first) and first % 2 == 0) or is_gap(mech, first)
     guess, slope = by_polynomial(st, out, first, h) if inside >= 1.0 and exact else (-1.0, 0.0)
-    if is_open(mech, first - joints) and out.inner[0, first] <= 10.0 * grain(mech, out, first, y):
+    if is_gap(mech, first) and out.inner[0, first] <= 10.0 * grain(mech, out, first, y):
         guess, slope = from_touch(st, out, first, h, opens), 0.0
     of_series = has_series(st)
     for i in range(80):
@@ -167,8 +165,8 @@ def locate_trigger(
             limit = 0.0
         if abs(value) <= limit or high - low <= 8.0 * EPS * max(abs(y.t), abs(h)):
             break
-        if is_open(mech, j - joints):
-            slope = out.rate[j - joints]
+        if is_gap(mech, j):
+            slope = out.rate[j - first_joint(mech)]
         elif j != first or abs(value) > BETTER * left:
             slope = 0.0
         left, guess = abs(value), (step - value / slope if slope < 0.0 else -1.0)

@@ -7,6 +7,7 @@ and joints end a mode; at a kink a step ends, and nothing changes but the polyno
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.implicit.equations.forces import is_open
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 
 
@@ -20,6 +21,12 @@ def first_joint(mech: Mech) -> int:
 def first_kink(mech: Mech) -> int:
     """The trigger of the first kink, behind those that end a mode."""
     return int(first_joint(mech) + mech.joint.port.shape[0])
+
+
+@kernel
+def is_gap(mech: Mech, j: int) -> bool:
+    """Whether trigger j is the distance of a joint that is open."""
+    return is_open(mech, j - first_joint(mech))
 
 
 @kernel

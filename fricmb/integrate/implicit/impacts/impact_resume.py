@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import entry, kernel, run_entry
 from fricmb.integrate.implicit.attempt_step import grow
-from fricmb.integrate.implicit.equations.accelerations import react
 from fricmb.integrate.implicit.equations.projection import project_velocities
 from fricmb.integrate.implicit.equations.singular_position import start_watch
 from fricmb.integrate.implicit.equations.slip_rows import plane
@@ -12,7 +11,7 @@ from fricmb.integrate.implicit.modes.load_share import join_rest
 from fricmb.integrate.implicit.modes.mode_decision import decide
 from fricmb.integrate.implicit.modes.mode_enumeration import FOUND, SEVERAL
 from fricmb.integrate.implicit.modes.mode_trial import ARRIVES, RESTED, SLIPS_ON
-from fricmb.integrate.implicit.modes.transition import bears, bring_to_rest, let_go, turn_with_slip
+from fricmb.integrate.implicit.modes.transition import bears, let_go, set_out_anew, turn_with_slip
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.output.recorder import Record, copy_state
 from fricmb.integrate.implicit.scene.control import Control
@@ -24,7 +23,7 @@ from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.problem import SLIP, STICK, Codes
 from fricmb.integrate.run.breakpoints import set_window
 from fricmb.integrate.run.mode_changes import record_changes
-from fricmb.integrate.run.outcomes import DONE, FAIL_MARGIN, FAIL_MODES, FAIL_PROJECT, FAIL_SEVERAL, FAIL_SINGULAR
+from fricmb.integrate.run.outcomes import DONE, FAIL_MODES, FAIL_SEVERAL, FAIL_SINGULAR
 
 #: Slip velocity that is round-off, beside the largest.
 STILL = 1e-11
@@ -85,14 +84,8 @@ def go_on(
         code = let_go(mech, k, w, y, out, worst)
         if code != DONE:
             return code
-    if not bring_to_rest(mech, k, w, y, part):
-        return FAIL_PROJECT
-    if not react(mech, k, w, y, False):
-        return FAIL_MODES
-    c.last_h = 0.0
-    c.made = 0.0
     c.growth = 1e300
-    return FAIL_MARGIN if margins(mech, k, w, y, out, True) <= 0.0 else DONE
+    return set_out_anew(mech, k, w, y, c, out, part)
 
 
 @run_entry

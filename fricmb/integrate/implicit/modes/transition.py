@@ -146,6 +146,18 @@ def take_given(mech: Mech, k: Moving, w: Instant, y: State, span: float, part: C
         part[c] = ARRIVES if slows and abs(y.g[a]) <= AT_ONCE * span * abs(y.ga[a]) else SLIPS_ON
 
 
+@kernel
+def set_out_anew(mech: Mech, k: Moving, w: Instant, y: State, c: Control, out: Watch, part: Codes) -> int:
+    """Reactions and friction of modes that have been decided; the step before is no guide to the next."""
+    if not bring_to_rest(mech, k, w, y, part):
+        return FAIL_PROJECT
+    if not react(mech, k, w, y, False):
+        return FAIL_MODES
+    c.last_h = 0.0
+    c.made = 0.0
+    return FAIL_MARGIN if margins(mech, k, w, y, out, True) <= 0.0 else DONE
+
+
 @block
 def change_modes(
     mech: Mech,
@@ -197,12 +209,4 @@ def change_modes(
         margins(mech, k, w, y, out, True)
         return FAIL_SEVERAL if code == SEVERAL else FAIL_MODES
     record_changes(mech.port, y.t, y, before, rec)
-    if not bring_to_rest(mech, k, w, y, part):
-        return FAIL_PROJECT
-    if not react(mech, k, w, y, False):
-        return FAIL_MODES
-    c.last_h = 0.0
-    c.made = 0.0
-    if margins(mech, k, w, y, out, True) <= 0.0:
-        return FAIL_MARGIN
-    return DONE
+    return set_out_anew(mech, k, w, y, c, out, part)
