@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from fricmb.errors import IntegrationError, Interrupted
-from fricmb.integrate.run.memory import refused
 from fricmb.integrate.run.stop import Watch, watching
 from fricmb.solution import Solution
 
 
-def run_watched(watch: Watch, run: Callable[[], Solution], method: str, t_start: float) -> Solution:
-    """The solution that ``run`` returns, under a watch; ``method`` and ``t_start`` are for messages.
+def run_watched(watch: Watch, run: Callable[[], Solution]) -> Solution:
+    """The solution that ``run`` returns, under a watch.
 
     Raises
     ------
     IntegrationError
-        Where the run could not go on, a limit was reached, or the system gave no more memory.
+        Where the run could not go on, or a limit was reached.
     Interrupted
         After Ctrl-C; what a handler of the user's own raises is raised as it is.
     """
@@ -29,10 +28,6 @@ def run_watched(watch: Watch, run: Callable[[], Solution], method: str, t_start:
         if not isinstance(watch.cause, KeyboardInterrupt):
             raise watch.cause from error
         raise error.passed_on(Interrupted) from None
-    except MemoryError as error:
-        reason = refused(error)
-        said = f"{method} stopped: {reason}"
-        raise IntegrationError(said, t=t_start, reason=reason) from None
     if watch.cause is not None:  # it came while the last step was made
         if not isinstance(watch.cause, KeyboardInterrupt):
             raise watch.cause

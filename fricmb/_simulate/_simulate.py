@@ -164,7 +164,6 @@ def simulate(
         with progress_bar(progress, span.t_start, span.t_end) as forward:
             options = {"tolerance": tolerance, "step": fixed, "progress": forward}
             sol = run_watched(
-                watch, lambda: run(keep, chosen.integrator, chosen.problem, start, span, finish, **options),
-                chosen.name, span.t_start,
-            )  # fmt: skip
+                watch, lambda: run(keep, chosen.integrator, chosen.problem, start, span, finish, **options)
+            )
         return differentiated(sol, asked)

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from fricmb.dae import _layout as L
 from fricmb.dae import _pattern as pattern
 from fricmb.dae._engine import Engine, System
 from fricmb.dae._function import Residual, is_compiled
 from fricmb.dae._jacobian import Differences, Given, pair
 from fricmb.dae._matrix import Matrix
 from fricmb.errors import ArgumentError, shown
+from fricmb.integrate.formulas.backward_differences import MAX_ORDER
 from fricmb.integrate.problem import Floats
 
 
@@ -103,9 +103,9 @@ def times(t_eval: Any, t0: float, t_end: float) -> Floats | None:
 
 def order(max_order: Any) -> int:
     """Highest order."""
-    whole = isinstance(max_order, int | float | np.integer | np.floating) and max_order in range(1, L.MAX_ORDER + 1)
+    whole = isinstance(max_order, int | float | np.integer | np.floating) and max_order in range(1, MAX_ORDER + 1)
     if not whole:
-        raise ArgumentError(f"`max_order` must be 1 to {L.MAX_ORDER}, not {shown(max_order)}.")
+        raise ArgumentError(f"`max_order` must be 1 to {MAX_ORDER}, not {shown(max_order)}.")
     return int(max_order)
 
 

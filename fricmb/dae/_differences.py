@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from fricmb.dae._compile import kernel
 from fricmb.dae._foreign import call
 from fricmb.dae._jacobian import CLEAR, CUBE_ROOT, ROOT, ROUNDS
+from fricmb.integrate.compile.kernel import kernel
 
 KNOWN, CENTRAL, CALLS = 0, 1, 2  # entries of ``flags``
 # rows of ``work``

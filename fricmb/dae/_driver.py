@@ -17,6 +17,7 @@ from fricmb.dae._events import Events
 from fricmb.dae._function import Residual
 from fricmb.dae._result import DaeResult, DaeSolution, evaluate
 from fricmb.errors import IntegrationError
+from fricmb.integrate.formulas.backward_differences import MAX_ORDER
 from fricmb.integrate.problem import Floats
 
 _CAUSES = {
@@ -47,7 +48,7 @@ def solve_dae(
     args: tuple[Any, ...] = (),
     first_step: float | None = None,
     max_step: float = np.inf,
-    max_order: int = L.MAX_ORDER,
+    max_order: int = MAX_ORDER,
 ) -> DaeResult:
     """Solve the implicit differential-algebraic equation ``fun(t, y, yp) = 0`` of index 1 from initial values.
 
@@ -103,10 +104,10 @@ def solve_dae(
 
     Notes
     -----
-    Backward differentiation formulas of order 1 to 5 with variable step and fixed leading coefficient, as in DASSL and
-    its descendants.  A jump of an algebraic component (an input that jumps) is stepped over by solving for consistent
-    values again after it.  Where fun jumps and drives y towards the jump from both sides, no solution goes on: the run
-    ends with a message that names the component.
+    Backward differentiation formulas of order 1 to 5 with variable step, by backward differences at equal steps,
+    which go over to another step by interpolation. A jump of an algebraic component (an input that jumps) is
+    stepped over by solving for consistent values again after it. Where fun jumps and drives y towards the jump from
+    both sides, no solution goes on: the run ends with a message that names the component.
     """
     t0, t_end = arguments.span(t_span)
     y_start, yp_start = arguments.state(y0, yp0)
@@ -196,13 +197,13 @@ class _Run:
 
     def _failure(self, code: int) -> str:
         t = self.record.t[self.record.size - 1]
-        h = abs(self.engine.real[L.H_STEP])
+        h = abs(self.engine.step.h)
         return f"The step size became too small at t = {t:.10g} (h = {h:.2g}): {_CAUSES[code]}."
 
     def _restart(self, code: int) -> bool:
         """Solve for consistent values just after the last point and begin again there; False if that is no way out."""
-        steps, t = int(self.engine.whole[L.STEPS]), float(self.record.t[self.record.size - 1])
-        attempt = abs(float(self.engine.real[L.H_STEP]))
+        steps, t = self.engine.step.steps, float(self.record.t[self.record.size - 1])
+        attempt = abs(self.engine.step.h)
         tiny = max(64.0 * float(np.spacing(max(abs(t), attempt))), 2.0 * attempt)
         if code not in (L.FAILED_ERROR, L.FAILED_NEWTON) or abs(self.t_end - t) < 1e3 * tiny:
             return False
@@ -235,7 +236,7 @@ class _Run:
             self.samples.append(evaluate(record.t[part], record.y[part], record.order[part], wanted, sign > 0))
             self.sampled = upto
         if not self.dense:
-            record.forget(L.MAX_ORDER + 1)
+            record.forget(MAX_ORDER + 1)
 
     def result(self) -> DaeResult:
         """What the user gets."""

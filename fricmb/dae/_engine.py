@@ -10,7 +10,7 @@ from fricmb.dae import _layout as L
 from fricmb.dae._consistent import Start
 from fricmb.dae._function import Residual
 from fricmb.dae._matrix import Matrix
-from fricmb.dae._stepper import advance
+from fricmb.dae._stepper import EARLY_GROWTH, advance
 from fricmb.integrate.problem import Floats
 
 
@@ -78,57 +78,48 @@ class Engine:
     chunk = 1
 
     def __init__(self, system: System, max_order: int, max_step: float, t_end: float) -> None:
-        n = len(system.rtol)
         self.system = system
-        self.whole = np.zeros(L.WHOLE_SIZE, dtype=np.int64)
-        self.real = np.zeros(L.REAL_SIZE)
-        self.rows = np.zeros((L.ROWS, n))
-        self.whole[L.ORDER_LIMIT] = max_order
-        self.real[L.T_END] = t_end
-        self.real[L.H_MAX] = max_step
+        self.step = L.stepper(len(system.rtol), max_order, max_step, t_end)
 
     def start(self, t: float, start: Start, h: float) -> None:
         """Begin at t, or begin again, with order 1 and step h."""
-        self.whole[[L.ORDER, L.RISING, L.FIRST, L.AT_START]] = 1
-        self.whole[[L.SAME, L.HAVE_FACTORS, L.FRESH, L.ERROR_FAILS, L.NEWTON_FAILS]] = 0
-        self.whole[L.POINTS] = 2
-        self.real[L.T], self.real[L.H], self.real[L.H_STEP] = t, h, h
-        self.real[L.CONTRACTION] = 20.0
-        self.real[L.AGO : L.AGO + 8] = 0.0
-        self.real[L.AGO + 1] = h
-        self.rows[L.HISTORY :] = 0.0
-        self.rows[L.HISTORY], self.rows[L.HISTORY + 1] = start.y, h * start.yp
-        self.rows[L.YP_LAST] = start.yp
+        s = self.step
+        s.t, s.h, s.growth = t, float(np.copysign(min(abs(h), s.longest), h)), EARLY_GROWTH
+        s.order = s.first = s.at_start = 1
+        s.equal = s.fresh = s.error_fails = s.newton_fails = 0
+        s.made = 0.0
+        s.D[:] = 0.0
+        s.D[0], s.D[1] = start.y, s.h * start.yp
+        s.rate[:] = start.yp
 
     def run(self, record: Record) -> int:
         """Make a step (or some) and record it: ACCEPTED, FINISHED, or the code of the failure."""
         served = L.SERVED
-        s = self.system
+        s, step = self.system, self.step
         while True:
-            request = advance(self.whole, self.real, self.rows, s.rtol, s.atol, served)
+            request = advance(step, s.rtol, s.atol, served)
             if request < 0:
                 return int(request)
             if request == L.ACCEPTED:
-                record.add(self.real[L.T], self.rows[L.HISTORY], self.rows[L.YP_LAST], self.whole[L.ORDER_USED])
-                return L.FINISHED if self.real[L.T] == self.real[L.T_END] else L.ACCEPTED
+                record.add(step.t, step.D[0], step.rate, step.order_used)
+                return L.FINISHED if step.t == step.t_end else L.ACCEPTED
             served = self.serve(request)
 
     def serve(self, request: int) -> int:
         """Do what the stepper asked for."""
-        s = self.system
-        t, c, h = float(self.real[L.T_NEW]), float(self.real[L.C]), float(self.real[L.H_STEP])
-        y, yp, delta = self.rows[L.Y], self.rows[L.YP], self.rows[L.DELTA]
+        s, step = self.system, self.step
+        t, y, yp, delta = float(step.now[0]), step.y, step.yp, step.delta
         if not s.residual(t, y, yp, delta):
             return L.NONFINITE
-        doubtful = self.whole[L.NEWTON_FAILS] >= 2 and not (s.jacobian.exact or s.jacobian.central)
+        doubtful = step.newton_fails >= 2 and not (s.jacobian.exact or s.jacobian.central)
         s.jacobian.central |= bool(doubtful)
         if request == L.JACOBIAN or (request == L.FACTOR and doubtful):
             s.jacobians += 1
-            if not s.jacobian.evaluate(t, y, yp, delta, c, h):
+            if not s.jacobian.evaluate(t, y, yp, delta, step.c, step.h):
                 return L.NONFINITE
         if request in (L.FACTOR, L.JACOBIAN):
             s.factorisations += 1
-            if not s.matrix.factor(c):
+            if not s.matrix.factor(step.c):
                 return L.SINGULAR
         s.matrix.solve(delta)
         return L.SERVED
@@ -140,8 +131,8 @@ class Engine:
             "nfev": s.evaluations + s.jacobian.calls,
             "njev": s.jacobians,
             "nlu": s.factorisations,
-            "nsteps": int(self.whole[L.STEPS]),
-            "nrejected": int(self.whole[L.REJECTED]),
+            "nsteps": self.step.steps,
+            "nrejected": self.step.rejected,
         }
 
 

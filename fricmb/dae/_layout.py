@@ -1,15 +1,19 @@
-"""Where the stepper keeps things: the names of the entries of its three arrays, and the codes it speaks in.
+"""What the stepper keeps, and the codes it speaks in.
 
 The stepper is one compiled kernel that never calls the user.  It returns a *request* (evaluate the residual, factor,
-...), is served by Python or by the compiled loop, and is called again.  All its memory is in three arrays:
-``whole`` (int64), ``real`` (float64) and ``rows`` (float64, one row of length n for each vector).
+...), is served by Python or by the compiled loop, and is called again.  All its memory is in one room.
 """
 
 from __future__ import annotations
 
 from typing import Final
 
-MAX_ORDER: Final = 5
+import numpy as np
+
+from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.compile.room import room
+from fricmb.integrate.formulas.backward_differences import gammas, rows, square
+from fricmb.integrate.problem import Floats, Floats2
 
 # requests of the stepper; below 0: it gave up, and why
 RESIDUAL: Final = 1  # evaluate F, solve with the factors at hand
@@ -28,53 +32,76 @@ SERVED: Final = 0
 NONFINITE: Final = 1
 SINGULAR: Final = 2
 
-# whole
-AT_START: Final = 0  # 1: the next call begins a step; 0: inside a Newton iteration
-ORDER: Final = 1
-ORDER_USED: Final = 2
-ORDER_LIMIT: Final = 3
-POINTS: Final = 4  # number of valid rows of the history
-RISING: Final = 5  # 1: start, where order and step rise at every step
-SAME: Final = 6  # steps since order or step size last changed
-ITERATION: Final = 7
-ERROR_FAILS: Final = 8  # in this step
-NEWTON_FAILS: Final = 9
-FRESH: Final = 10  # 1: the Jacobians were evaluated in this step
-HAVE_FACTORS: Final = 11
-FIRST: Final = 12  # 1: no step was made since the (re)start
-JACOBIAN_AGE: Final = 13  # steps since the Jacobians were evaluated
-STEPS: Final = 14
-REJECTED: Final = 15
-RESIDUALS: Final = 16
-JACOBIANS: Final = 17
-FACTORS: Final = 18
-LAST_CAUSE: Final = 19  # why the last attempt was rejected, a FAILED_... code
-WHOLE_SIZE: Final = 24
 
-# real
-T: Final = 0
-H: Final = 1  # step to try next, with sign
-T_NEW: Final = 2
-H_STEP: Final = 3  # step of the current attempt
-T_END: Final = 4
-H_MAX: Final = 5
-C: Final = 6  # leading coefficient of yp = ... + C y
-C_FACTOR: Final = 7  # the one that was factored
-CONTRACTION: Final = 8  # rate/(1 - rate) of the Newton iteration
-NORM_FIRST: Final = 9
-SCALE: Final = 10  # correction of the Newton step for C != C_FACTOR
-AGO: Final = 16  # AGO + i: t_n - t_(n-i), i = 0..MAX_ORDER + 1
-STAR: Final = 24  # STAR + j: factor that carries history row j to the new step size
-GAMMA: Final = 32  # derivative weights of the predictor
-SIGMA: Final = 40  # weights of the error estimates at constant step
-REAL_SIZE: Final = 48
+class Stepper(Layout):
+    """The ``History`` of ``formulas/backward_differences`` for the n components of y, and where a step stands.
 
-# rows
-Y: Final = 0
-YP: Final = 1
-CHANGE: Final = 2  # y - predicted y
-DELTA: Final = 3  # residual, then Newton step
-WEIGHT: Final = 4
-YP_LAST: Final = 5  # yp at the last accepted point
-HISTORY: Final = 6  # HISTORY + j, j = 0..MAX_ORDER: what the predictor of degree j - 1 missed at the last point
-ROWS: Final = HISTORY + MAX_ORDER + 1
+    ``y``, ``yp`` (n,) of the attempt, ``now`` (1,) its time; ``delta`` residual, then Newton step; ``weight`` what
+    turns a change of y into units of its tolerance; ``rate`` (n,) yp at the last point, whose time is ``t``;
+    ``t_end``; ``longest`` step.
+
+    ``c`` yp = ... + c y; ``made`` the c of the factors, 0 where there are none; ``scale`` what a Newton step is
+    multiplied by where c is another; ``convergence`` rate of the iteration, ``norm_first`` of its first change.
+
+    ``growth`` of a step at most; ``highest`` order allowed; ``order_used`` by the last step; whether the next call
+    begins a step, ``at_start``; ``iteration``; failures of this step by its error and by Newton's method,
+    ``error_fails`` and ``newton_fails``; whether the Jacobians are of this step, ``fresh``, and their ``age`` in steps;
+    whether no step was made since the (re)start, ``first``; counts of ``steps``, ``rejected``, and, by the compiled
+    loop, ``residuals``, ``jacobians``, ``factors``.
+    """
+
+    D: Floats2
+    h: float
+    order: int
+    equal: int
+    d: Floats
+    gamma: Floats
+    U: Floats2
+    E: Floats2
+    column: Floats
+    y: Floats
+    yp: Floats
+    now: Floats
+    delta: Floats
+    weight: Floats
+    rate: Floats
+    t: float
+    t_end: float
+    longest: float
+    c: float
+    made: float
+    scale: float
+    convergence: float
+    norm_first: float
+    growth: float
+    highest: int
+    order_used: int
+    at_start: int
+    iteration: int
+    error_fails: int
+    newton_fails: int
+    fresh: int
+    age: int
+    first: int
+    steps: int
+    rejected: int
+    residuals: int
+    jacobians: int
+    factors: int
+
+
+def stepper(n: int, highest: int, longest: float, t_end: float) -> Stepper:
+    """Space for a run of n components."""
+    vector = np.zeros(n)
+    return room(
+        Stepper(
+            D=rows(n), h=0.0, order=1, equal=0, d=vector.copy(), gamma=gammas(), U=square(), E=square(),
+            column=np.zeros(len(square())),
+            y=vector.copy(), yp=vector.copy(), now=np.zeros(1), delta=vector.copy(), weight=vector.copy(),
+            rate=vector.copy(),
+            t=0.0, t_end=t_end, longest=longest,
+            c=0.0, made=0.0, scale=1.0, convergence=1.0, norm_first=0.0,
+            growth=0.0, highest=highest, order_used=1, at_start=1, iteration=0, error_fails=0, newton_fails=0,
+            fresh=0, age=0, first=1, steps=0, rejected=0, residuals=0, jacobians=0, factors=0,
+        )
+    )  # fmt: skip

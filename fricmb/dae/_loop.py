@@ -9,12 +9,13 @@ import numpy as np
 
 from fricmb.dae import _differences as D
 from fricmb.dae import _layout as L
-from fricmb.dae._compile import kernel
 from fricmb.dae._differences import differences, residual
 from fricmb.dae._engine import Engine, Record, System
 from fricmb.dae._foreign import Compiled, call, lapack
+from fricmb.dae._layout import Stepper
 from fricmb.dae._matrix import Banded, Dense
 from fricmb.dae._stepper import advance
+from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.problem import Floats
 from fricmb.integrate.run.slices import slice_over, slicing, ticks
 
@@ -48,9 +49,9 @@ def _solve(kind: int, routines: Any, store: Any, pivots: Any, small: Any, right:
         call(routines[3], (trans, n, lower, upper, one, store, height, pivots, right, n, info))
 
 
-@kernel
+@entry
 def run(
-    whole: Any, real: Any, rows: Any, rtol: Any, atol: Any, served: int, addresses: Any, p: Any, p_jac: Any,
+    s: Stepper, rtol: Any, atol: Any, served: int, addresses: Any, p: Any, p_jac: Any,
     dy: Any, dyp: Any, store: Any, pivots: Any, small: Any, pattern: Any, members: Any, ends: Any,
     floor: Any, direction: Any, work: Any, flags: Any, n: Any,
     times: Any, ys: Any, yps: Any, orders: Any, size: Any,
@@ -61,41 +62,40 @@ def run(
     ``size``: points recorded, points at which to return.
     """
     kind, fun, jac, routines = addresses[0], addresses[1], addresses[2], addresses[3:]
-    t = real[L.T_NEW : L.T_NEW + 1]
-    y, yp, delta = rows[L.Y], rows[L.YP], rows[L.DELTA]
+    t, y, yp, delta = s.now, s.y, s.yp, s.delta
     begun = ticks()
     while True:
-        request = advance(whole, real, rows, rtol, atol, served)
+        request = advance(s, rtol, atol, served)
         if request < 0:
             return request
         if request == L.ACCEPTED:
             m = size[0]
-            times[m] = real[L.T]
-            orders[m] = whole[L.ORDER_USED]
+            times[m] = s.t
+            orders[m] = s.order_used
             for i in range(len(y)):
-                ys[m, i] = rows[L.HISTORY, i]
-                yps[m, i] = rows[L.YP_LAST, i]
+                ys[m, i] = s.D[0, i]
+                yps[m, i] = s.rate[i]
             size[0] = m + 1
             served = L.SERVED
-            if real[L.T] == real[L.T_END]:
+            if s.t == s.t_end:
                 return L.FINISHED
             if m + 1 >= size[1] or slice_over(begun):
                 return L.FULL
             continue
-        doubtful = jac == 0 and whole[L.NEWTON_FAILS] >= 2 and flags[D.CENTRAL] == 0
+        doubtful = jac == 0 and s.newton_fails >= 2 and flags[D.CENTRAL] == 0
         if kind == _ELSEWHERE or (jac < 0 and request == L.JACOBIAN):
             return request
-        whole[L.RESIDUALS] += 1
+        s.residuals += 1
         served = L.SERVED
         if not residual(fun, t, y, yp, delta, p, n):
             served = L.NONFINITE
             continue
         if request == L.JACOBIAN or (request == L.FACTOR and doubtful):
-            whole[L.JACOBIANS] += 1
+            s.jacobians += 1
             if jac == 0:
                 flags[D.CENTRAL] |= doubtful
                 if not differences(
-                    fun, t, y, yp, delta, p, n, real[L.C], real[L.H_STEP], rtol, atol,
+                    fun, t, y, yp, delta, p, n, s.c, s.h, rtol, atol,
                     dy, dyp, pattern, members, ends, floor, direction, work, flags,
                 ):  # fmt: skip
                     served = L.NONFINITE
@@ -103,8 +103,8 @@ def run(
             else:
                 call(jac, (t, y, yp, dy, dyp, p_jac, n))
         if request != L.RESIDUAL:
-            whole[L.FACTORS] += 1
-            if not _factor(kind, routines, real[L.C], dy, dyp, store, pivots, small):
+            s.factors += 1
+            if not _factor(kind, routines, s.c, dy, dyp, store, pivots, small):
                 served = L.SINGULAR
                 continue
         _solve(kind, routines, store, pivots, small, delta)
@@ -149,7 +149,7 @@ class CompiledEngine(Engine):
         while True:
             with slicing():
                 request = run(
-                    self.whole, self.real, self.rows, s.rtol, s.atol, served, self.addresses, self.code.parameters,
+                    self.step, s.rtol, s.atol, served, self.addresses, self.code.parameters,
                     self.code.parameters if self.jac is None else self.jac.parameters,
                     m.dy, m.dyp, m.store, self.pivots, self.small, pattern, self.members, self.ends,
                     self.floor, self.direction, self.work, self.flags, self.n,
@@ -167,7 +167,7 @@ class CompiledEngine(Engine):
     def counts(self) -> dict[str, int]:
         """Counters of the run."""
         found = super().counts()
-        found["nfev"] += int(self.whole[L.RESIDUALS] + self.flags[D.CALLS])
-        found["njev"] += int(self.whole[L.JACOBIANS])
-        found["nlu"] += int(self.whole[L.FACTORS])
+        found["nfev"] += self.step.residuals + int(self.flags[D.CALLS])
+        found["njev"] += self.step.jacobians
+        found["nlu"] += self.step.factors
         return found

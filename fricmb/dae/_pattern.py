@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from fricmb.dae._compile import kernel
 from fricmb.dae._matrix import Banded, Dense, Ints, Matrix, Pattern, Sparse
+from fricmb.integrate.compile.kernel import entry
 
 
 def dense(n: int) -> Matrix:
@@ -64,7 +64,7 @@ def sparse_matrix(structure: Any) -> Matrix:
     return Sparse(Pattern(n=n, size=len(rows), start=start, rows=rows, place=np.arange(len(rows)), groups=groups))
 
 
-@kernel
+@entry
 def _colour(start: Ints, rows: Ints, row_start: Ints, row_columns: Ints) -> Ints:
     """Number the columns so that two with a common row differ: each takes the lowest number free, in order."""
     n = len(start) - 1

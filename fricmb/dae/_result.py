@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 from scipy.optimize import OptimizeResult
 
-from fricmb.dae._compile import kernel
 from fricmb.errors import ArgumentError
+from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.problem import Floats
 
 
-@kernel
+@entry
 def interpolate(ts: Any, ys: Any, orders: Any, times: Any, steps: Any, out: Any, rate: Any) -> None:
     """Value and derivative at ``times[m]`` of the polynomial through the points of step ``steps[m]`` and before.
 

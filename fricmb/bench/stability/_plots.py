@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from fricmb.bench.stability._regions import STAGES, bdf_growth, radau_growth
-from fricmb.integrate.implicit.bdf.bdf_stability import MAX_ORDER
+from fricmb.integrate.formulas.backward_differences import MAX_ORDER
 
 
 def _grid(left: float, right: float, top: float, count: int) -> tuple[Any, Any, Any]:

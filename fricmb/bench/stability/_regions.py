@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fricmb.bench._reference import Floats
+from fricmb.integrate.formulas.backward_differences import MAX_ORDER
 from fricmb.integrate.formulas.tableau import radau
-from fricmb.integrate.implicit.bdf.bdf_stability import MAX_ORDER, backward_polynomial
+from fricmb.integrate.implicit.bdf.bdf_stability import backward_polynomial
 
 Complexes = NDArray[np.complex128]
 ComplexFloats = NDArray[np.complexfloating[Any, Any]]

@@ -1,8 +1,8 @@
 """How long the next step may be: the formula, and the ladder of step sizes.
 
 Who takes or rejects a step sets bounds: ``implicit/attempt_step`` (``radau``, ``bdf`` around transitions: ``GROWTH``,
-``CUT`` and the like) and ``backward_differences`` (``bdf``: ``GROWTH``).  After a failure ``next_step`` holds growth
-back in the former; steps of BDF grow only after k + 1 equal ones anyhow.
+``CUT`` and the like), ``implicit/bdf/turns`` (``bdf``: ``GROWTH``), ``dae/_stepper`` (``solve_dae``). After a failure
+``next_step`` holds growth back in the former; steps of BDF grow only after k + 1 equal ones anyhow.
 
 The other methods ask the same formula: ``collocation/one_contact/run.length_factor`` (growth up to 3),
 ``taylor/step_start`` (1.5).

@@ -12,8 +12,8 @@ import numpy as np
 from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.formulas.step_control import FREE, SAMPLED, first_step
 from fricmb.integrate.formulas.tableau import Tableau
-from fricmb.integrate.implicit.bdf.backward_differences import Differences, differences, no_differences
 from fricmb.integrate.implicit.bdf.bdf_history import Formula, formula_of, guard_at, no_formula, signals
+from fricmb.integrate.implicit.bdf.turns import Differences, differences, no_differences
 from fricmb.integrate.implicit.equations.consistent_start import away, check_apart, consistent_start
 from fricmb.integrate.implicit.equations.least_change import names_of_rows
 from fricmb.integrate.implicit.events.event_functions import FINEST, ROUGH, ROUGHEST

@@ -6,9 +6,9 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import run_entry
 from fricmb.integrate.implicit.attempt_step import arrive, attempt_step, grow
-from fricmb.integrate.implicit.bdf.backward_differences import Differences, hand_over, is_slower, may_begin
 from fricmb.integrate.implicit.bdf.bdf_history import Formula, start_past
 from fricmb.integrate.implicit.bdf.bdf_step import attempt_bdf_step
+from fricmb.integrate.implicit.bdf.turns import Differences, hand_over, is_slower, may_begin
 from fricmb.integrate.implicit.between.between_stages import growth_of_slip
 from fricmb.integrate.implicit.equations.accelerations import react
 from fricmb.integrate.implicit.equations.projection import project_velocities

@@ -9,7 +9,6 @@ from fricmb.integrate.compile.kernel import entry, kernel
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.room import room
 from fricmb.integrate.formulas.tableau import one_stage
-from fricmb.integrate.implicit.bdf.backward_differences import Differences, begin_at
 from fricmb.integrate.implicit.bdf.bdf_stability import (
     WHOLE,
     BdfGuard,
@@ -18,6 +17,7 @@ from fricmb.integrate.implicit.bdf.bdf_stability import (
     spectrum,
     spectrum_within,
 )
+from fricmb.integrate.implicit.bdf.turns import Differences, begin_at
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import State, set_out, state_of

@@ -13,9 +13,9 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
+from fricmb.integrate.formulas.backward_differences import MAX_ORDER
 from fricmb.integrate.problem import Floats, Floats2
 
-MAX_ORDER = 5
 #: z = h omega of the table's columns.
 SPACING, COLUMNS = 0.02, 600
 

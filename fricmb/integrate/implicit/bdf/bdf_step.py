@@ -1,6 +1,6 @@
 """A BDF step: one stage of the one-step method's equations, from what the formula keeps of the past.
 
-With gamma_k = 1 + 1/2 + ... + 1/k the formula reads y = psi + (h/gamma_k) y' (see ``backward_differences``).
+With gamma_k = 1 + 1/2 + ... + 1/k the formula reads y = psi + (h/gamma_k) y' (see ``formulas/backward_differences``).
 Velocities, multipliers and friction forces are solved for on the level of velocities; positions and velocities are then
 moved onto their constraints, and what has been moved enters the history (Eich 1993: BDF with projection keeps its
 order).
@@ -12,22 +12,18 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.formulas.step_control import BDF_RUNGS, ladder
-from fricmb.integrate.implicit.attempt_step import grow
-from fricmb.integrate.implicit.bdf.backward_differences import (
-    GROWTH,
-    Differences,
-    allowed,
+from fricmb.integrate.formulas.backward_differences import (
+    MAX_ORDER,
     best_order,
     bring_forward,
     change_order,
-    count_step,
-    predict,
-    reject,
     rescale,
 )
+from fricmb.integrate.formulas.step_control import BDF_RUNGS, ladder
+from fricmb.integrate.implicit.attempt_step import grow
 from fricmb.integrate.implicit.bdf.bdf_history import Formula, put
-from fricmb.integrate.implicit.bdf.bdf_stability import MAX_ORDER, admissible
+from fricmb.integrate.implicit.bdf.bdf_stability import admissible
+from fricmb.integrate.implicit.bdf.turns import GROWTH, Differences, allowed, count_step, predict, reject
 from fricmb.integrate.implicit.between.between_stages import growth_of_slip, passes_bend, weigh_ports
 from fricmb.integrate.implicit.between.element_bends import bend_within
 from fricmb.integrate.implicit.between.force_jumps import jump_error
@@ -183,7 +179,7 @@ def select_order(y: State, c: Control, past: Differences, formula: Formula, erro
         lower = scaled(y, c, past, formula, past.D[k], 1.0 / k)
     if k < MAX_ORDER and admissible(guard, k + 1, past.h, left):
         higher = scaled(y, c, past, formula, past.D[k + 2], 1.0 / (k + 2))
-    best_k, best = best_order(k, lower, error, higher)
+    best_k, best = best_order(k, lower, error, higher, 0)
     step = ladder(min(best, GROWTH, c.longest / past.h), BDF_RUNGS)
     while step > 1.0 and not admissible(guard, best_k, past.h * step, left):
         step = ladder(0.99 * step, BDF_RUNGS)

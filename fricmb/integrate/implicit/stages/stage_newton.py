@@ -10,6 +10,7 @@ import numpy as np
 
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.formulas.newton import left_over
 from fricmb.integrate.implicit.equations.forces import forces, move
 from fricmb.integrate.implicit.equations.friction_rows import friction_residual
 from fricmb.integrate.implicit.scene.moving import Moving
@@ -223,7 +224,7 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, made: 
         rate = change / last if last < np.inf else exact
         if last < np.inf or exact < 1.0:
             st.found = rate
-        if not far and (change <= 1e-15 or (rate < 1.0 and change * rate / (1.0 - rate) <= accuracy)):
+        if not far and (change <= 1e-15 or left_over(change, rate) <= accuracy):
             end_iteration(mech, y, st, h, change <= accuracy)
             return iteration + 1
         if last < np.inf and not steep and (rate >= 2.0 or (iteration > 2 and rate >= 0.95)):
