@@ -34,7 +34,7 @@ FLOORS = (
 #: Inside `integrate`, imports inside functions counted: what a problem is and what a run returns; compilation; what
 #: goes on around any run; inputs; forces and laws; formulas and step control; the engines; methods by their names.
 ENGINE = (
-    {"problem", "once_per", "array_cache", "mechanism", "csr", "trajectory", "integrator"},
+    {"problem", "event_kinds", "once_per", "array_cache", "mechanism", "csr", "trajectory", "integrator"},
     {"compile"},
     {"run"},
     {"signals"},

@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 
 from fricmb.errors import SceneError, shown
-from fricmb.integrate import EVENT_KINDS
+from fricmb.integrate.event_kinds import TABLE
 from fricmb.integrate.problem import Floats
 
 PERIOD = "period"
+#: What is measured of a contact by when it happens.
+_KINDS = tuple(kind.name for kind in TABLE if kind.transition)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,7 +63,7 @@ def read(data: Any, signals: Iterable[str] | None, sigma: Any) -> tuple[Measured
     found = []
     for name, values in columns.items():
         x = np.atleast_1d(numbers(f"data: {name}", values)).ravel()
-        kind = PERIOD if name == PERIOD else "event" if name.rpartition(".")[2] in EVENT_KINDS else "signal"
+        kind = PERIOD if name == PERIOD else "event" if name.rpartition(".")[2] in _KINDS else "signal"
         when = x if kind == "event" else np.zeros(x.size) if kind == PERIOD else _times(t, x, name)
         good = np.isfinite(x) & np.isfinite(when)
         if not good.any():
@@ -101,7 +103,7 @@ def _chosen(table: dict[str, Any], names: tuple[str, ...] | None) -> dict[str, A
     missing = [name for name in names if name not in table]
     if missing:
         raise SceneError(f"signals: data has no column {missing[0]!r}; it has {', '.join(map(repr, table))}")
-    others = [name for name in table if name == PERIOD or name.rpartition(".")[2] in EVENT_KINDS]
+    others = [name for name in table if name == PERIOD or name.rpartition(".")[2] in _KINDS]
     return {name: table[name] for name in dict.fromkeys([*names, *others])}
 
 

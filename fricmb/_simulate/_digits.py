@@ -10,7 +10,8 @@ import numpy as np
 from fricmb._simulate._closes import FIXED
 from fricmb._simulate._joined import runs_of
 from fricmb.integrate import Trajectory
-from fricmb.integrate.problem import EVENT_SLIP, Floats, Problem
+from fricmb.integrate.event_kinds import EVENT_SLIP, IS_TRANSITION
+from fricmb.integrate.problem import Floats, Problem
 
 #: Relative round-off of a number.
 EPS = float(np.finfo(float).eps)
@@ -56,7 +57,8 @@ def _held_before(run: Trajectory) -> set[int]:
     for t, k, kind in zip(events.t, events.contact, events.kind, strict=True):
         if kind == EVENT_SLIP and t - since[k] > least:
             found.add(int(k))
-        since[k] = t
+        if IS_TRANSITION[kind]:
+            since[k] = t
     return found
 
 

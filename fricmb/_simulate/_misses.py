@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from fricmb._simulate._joined import runs_of
+from fricmb.integrate.event_kinds import EVENT_STICK
 from fricmb.integrate.implicit.output.step_trajectory import StepTrajectory
-from fricmb.integrate.problem import EVENT_STICK, LAW_SMOOTH, SLIP, STICK, Floats, Ints, Problem
+from fricmb.integrate.problem import LAW_SMOOTH, SLIP, STICK, Floats, Ints, Problem
 from fricmb.integrate.run.chunked_run import KeptTrajectory
 from fricmb.integrate.trajectory import Trajectory
 from fricmb.solution import Solution

@@ -10,6 +10,7 @@ import numpy as np
 import fricmb as fm
 from fricmb.errors import IntegrationError, Interrupted
 from fricmb.integrate import STICK
+from fricmb.integrate.event_kinds import OF_CONTACTS
 
 
 def as_text(sol: fm.Solution) -> str:
@@ -33,7 +34,7 @@ def as_json(sol: fm.Solution, failure: IntegrationError | Interrupted | None = N
             name: {
                 "events": {
                     kind: sum(e.kind == kind and e.contact == name for e in sol.events)
-                    for kind in ("stick", "slip", "open", "close", "reversal")
+                    for kind in OF_CONTACTS
                 },
                 "stick_share": sol.time_share(name, STICK),
                 "rest_share": sol.rest_share(name),

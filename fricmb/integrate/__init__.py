@@ -12,8 +12,8 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "named": ["integrators"],
         "integrator": ["Integrator", "Tolerance"],
         "methods.one_step": ["OneStepMethod"],
+        "event_kinds": ["EVENT_KINDS"],
         "problem": [
-            "EVENT_KINDS",
             "OPEN",
             "SLIP",
             "STICK",

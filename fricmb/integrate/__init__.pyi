@@ -1,8 +1,8 @@
+from fricmb.integrate.event_kinds import EVENT_KINDS as EVENT_KINDS
 from fricmb.integrate.integrator import Integrator as Integrator
 from fricmb.integrate.integrator import Tolerance as Tolerance
 from fricmb.integrate.methods.one_step import OneStepMethod as OneStepMethod
 from fricmb.integrate.named import integrators as integrators
-from fricmb.integrate.problem import EVENT_KINDS as EVENT_KINDS
 from fricmb.integrate.problem import OPEN as OPEN
 from fricmb.integrate.problem import SLIP as SLIP
 from fricmb.integrate.problem import STICK as STICK

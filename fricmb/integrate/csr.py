@@ -48,11 +48,6 @@ class Csr:
         return cls(shape, start, index, np.asarray(total, dtype=float))
 
     @classmethod
-    def in_order(cls, rows: _Ints, columns: _Ints, values: _Floats, shape: tuple[int, int]) -> Csr:
-        """From places that rise, row by row, each of them once, and their values."""
-        return cls(shape, _starts(rows, shape[0]), columns, values)
-
-    @classmethod
     def of_dense(cls, matrix: Any) -> Csr:
         """The non-zeros of a dense matrix."""
         dense = np.asarray(matrix, dtype=float)

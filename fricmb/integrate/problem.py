@@ -42,9 +42,6 @@ Codes2 = NDArray[np.int8]
 
 #: Contact modes; the sign of one-dimensional slip is the direction n.
 STICK, SLIP, OPEN = 0, 1, 2
-#: Kinds of event, in the order of :data:`EVENT_KINDS`.
-EVENT_STICK, EVENT_SLIP, EVENT_OPEN, EVENT_CLOSE, EVENT_REVERSAL, EVENT_IMPACT, EVENT_REST = range(7)
-EVENT_KINDS = ("stick", "slip", "open", "close", "reversal", "impact", "rest")
 #: Kinds of law: constant mu_s and mu_0; coefficient mu(r, N); smooth force F(v, N, z), which never sticks.
 LAW_CONSTANT, LAW_COEFFICIENT, LAW_SMOOTH = 0, 1, 2
 #: Kinds of normal force: constant; an expression that acts on nobody; a law whose force both bodies feel; the reaction

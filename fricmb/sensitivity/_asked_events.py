@@ -22,8 +22,8 @@ def with_asked_events(sol: Any, tangent: Any, found: Derivatives) -> Derivatives
     transition = sol.events.is_transition
     if transition.all():
         return found
-    event_times = np.zeros((transition.size, len(found.columns)))
-    transversality = np.full(transition.size, np.inf)
+    event_times = np.full((transition.size, len(found.columns)), np.nan)
+    transversality = np.full(transition.size, np.nan)
     event_times[transition], transversality[transition] = found.event_times, found.transversality
     names = np.array([event.name for event in sol.events])
     for one in sol.asked_events:

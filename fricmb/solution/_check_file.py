@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from fricmb.errors import FricmbError
+from fricmb.integrate.event_kinds import EVENT_KINDS, TABLE
 from fricmb.integrate.trajectory import IMPACT_COLUMNS
-from fricmb.solution._events import ASKED, KINDS
+from fricmb.solution._events import ASKED
 from fricmb.solution._names import VECTORS, Names
 from fricmb.solution._run import ROUND_OFF
 from fricmb.solution._stats import IslandStats, Stats
@@ -125,12 +126,12 @@ def _check_events(held: Mapping[str, Any], names: Names, about: Mapping[str, Any
     inside = (times >= about["t_start"] - margin) & (times <= about["t_end"] + margin)
     if not inside.all() or np.any(np.diff(times) < 0.0):
         raise FricmbError("entry 'event_t' has times out of order or outside the run")
-    impacts = np.isin(kinds, ("impact", "rest"))
+    impacts = np.isin(kinds, [kind.name for kind in TABLE if kind.impact])
     if "event_impacts" in held:
         _expect("event_impacts", held["event_impacts"], (int(impacts.sum()), len(IMPACT_COLUMNS)), "f")
     # what is rigid needs no friction
     others = ~impacts & (kinds != "open") & (kinds != ASKED)
     if contacts.dtype.kind != "U" or not set(contacts[others].tolist()) <= set(names.contacts):
         raise FricmbError("entry 'event_contact' names a contact that is not there")
-    if not set(kinds.tolist()) <= set(KINDS):
+    if not set(kinds.tolist()) <= set(EVENT_KINDS):
         raise FricmbError("entry 'event_kind' names a kind of event that is not known")

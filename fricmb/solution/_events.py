@@ -5,6 +5,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from textwrap import fill
 from typing import Any, overload
 
 import numpy as np
@@ -12,13 +13,12 @@ from numpy.typing import NDArray
 
 from fricmb.errors import SceneError, unknown_name
 from fricmb.integrate import EVENT_KINDS, Transitions
-from fricmb.integrate.problem import EVENT_IMPACT, EVENT_REST, Floats, Ints
+from fricmb.integrate.event_kinds import EVENT_ASKED, HAS_IMPACT, IS_TRANSITION, TABLE
+from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.trajectory import IMPACT_COLUMNS
 
 #: The kind of an event that a user has asked for.
-ASKED = "event"
-#: Kinds of events: transitions, and what a user has asked for.
-KINDS = (*EVENT_KINDS, ASKED)
+ASKED = EVENT_KINDS[EVENT_ASKED]
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,7 @@ class Event:
     name : str
         Of the contact, or of the expression.
     kind : str
-        "stick" (slip ends), "slip" (stick ends), "open", "close", "reversal" (one-dimensional slip turns round
-        without sticking), "impact" or "rest" (bounces have ended, and the contact is held);
-        "event" for an expression.
+        {kinds}.
 
     Of an impact also :attr:`impulse`, :attr:`tangential_impulse`, :attr:`approach`, :attr:`loss`, :attr:`others`; of a
     rest :attr:`left` and :attr:`bound`; of both :attr:`side`.
@@ -124,6 +122,10 @@ class Event:
         return self._dt
 
 
+_KINDS = ", ".join(f'"{kind.name}" ({kind.says})' for kind in TABLE)
+Event.__doc__ = str(Event.__doc__).format(kinds=fill(_KINDS, 111).replace("\n", "\n        "))
+
+
 @dataclass(frozen=True, kw_only=True)
 class TimeDerivatives:
     """Derivatives of an event's time: by ``columns`` (n,), and its transversality."""
@@ -152,7 +154,7 @@ class Events(Sequence[Event]):
         place = {name: i for i, name in enumerate(self._names)}
         self._t = np.array([event.t for event in held], dtype=float)
         self._name = np.array([place[event.name] for event in held], dtype=np.int64)
-        self._kind = np.array([KINDS.index(event.kind) for event in held], dtype=np.int64)
+        self._kind = np.array([EVENT_KINDS.index(event.kind) for event in held], dtype=np.int64)
         dt = [event._dt for event in held]
         self._dt = dt if any(one is not None for one in dt) else None
         rows = [event._impact for event in held if event._impact is not None]
@@ -189,7 +191,7 @@ class Events(Sequence[Event]):
 
     def _row_of_impact(self) -> Ints:
         """Row of each event among the impacts (n_events,), -1 for others."""
-        mine = (self._kind == EVENT_IMPACT) | (self._kind == EVENT_REST)
+        mine = HAS_IMPACT[self._kind]
         return np.where(mine & (len(self._impacts) > 0), np.cumsum(mine) - 1, -1)
 
     def _part(self, chosen: Any) -> Events:
@@ -223,13 +225,13 @@ class Events(Sequence[Event]):
         contact, name : str, optional
             Of a contact; of a contact or an expression.
         """
-        if kind is not None and kind not in KINDS:
-            raise unknown_name("kind of event", kind, KINDS)
+        if kind is not None and kind not in EVENT_KINDS:
+            raise unknown_name("kind of event", kind, EVENT_KINDS)
         mine = np.ones(len(self), dtype=bool)
         if kind is not None:
-            mine &= self._kind == KINDS.index(kind)
+            mine &= self._kind == EVENT_KINDS.index(kind)
         if contact is not None:
-            mine &= (self._name == self._place(contact)) & (self._kind != KINDS.index(ASKED))
+            mine &= (self._name == self._place(contact)) & (self._kind != EVENT_ASKED)
         if name is not None:
             mine &= self._name == self._place(name)
         return self._part(mine)
@@ -246,8 +248,8 @@ class Events(Sequence[Event]):
 
     @property
     def is_transition(self) -> NDArray[np.bool_]:
-        """Whether each event (n_events,) is one of a contact or an impact, and not one that a user has asked for."""
-        found: NDArray[np.bool_] = self._kind != KINDS.index(ASKED)
+        """Whether at each event (n_events,) what a contact does changes, and not only what has been asked for."""
+        found: NDArray[np.bool_] = IS_TRANSITION[self._kind]
         return found
 
     def with_asked(self, asked: Iterable[Event]) -> Events:
@@ -271,7 +273,7 @@ class Events(Sequence[Event]):
         dt = None if self._dt is None else self._dt[index]
         row, name = int(self._row_of_impact()[index]), self._names[self._name[index]]
         impact = None if row < 0 else tuple(self._impacts[row].tolist())
-        return Event(float(self._t[index]), name, KINDS[self._kind[index]], dt, impact)
+        return Event(float(self._t[index]), name, EVENT_KINDS[self._kind[index]], dt, impact)
 
     def __iter__(self) -> Iterator[Event]:
         dt = [None] * len(self) if self._dt is None else self._dt
@@ -279,7 +281,7 @@ class Events(Sequence[Event]):
         held = [None if row < 0 else impacts[row] for row in self._row_of_impact().tolist()]
         columns = zip(self._t.tolist(), self._name.tolist(), self._kind.tolist(), dt, held, strict=True)
         return (
-            Event(t, self._names[name], KINDS[kind], one, impact) for t, name, kind, one, impact in columns
+            Event(t, self._names[name], EVENT_KINDS[kind], one, impact) for t, name, kind, one, impact in columns
         )
 
     def __eq__(self, other: object) -> bool:
@@ -290,6 +292,6 @@ class Events(Sequence[Event]):
     def __repr__(self) -> str:
         if not len(self):
             return "<no events>"
-        counts = np.bincount(self._kind, minlength=len(KINDS)).tolist()
-        shown = ", ".join(f"{n} {kind}" for kind, n in zip(KINDS, counts, strict=True) if n)
+        counts = np.bincount(self._kind, minlength=len(EVENT_KINDS)).tolist()
+        shown = ", ".join(f"{n} {kind}" for kind, n in zip(EVENT_KINDS, counts, strict=True) if n)
         return f"<{len(self)} events: {shown}>"

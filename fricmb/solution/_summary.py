@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fricmb.integrate import OPEN, STICK
+from fricmb.integrate.event_kinds import OF_CONTACTS
 from fricmb.solution._run import Run
 from fricmb.values import DIMENSIONS, counted
 
@@ -72,7 +73,7 @@ def _contacts(sol: Solution) -> list[str]:
     lines = []
     for group in groups:
         only = group[0] if len(group) == 1 else None
-        numbers = {kind: len(sol.events.of(kind=kind, contact=only)) for kind in _KINDS}
+        numbers = {kind: len(sol.events.of(kind=kind, contact=only)) for kind in OF_CONTACTS}
         counts = [f"{number} {kind}" for kind, number in numbers.items() if number]
         places = [names.index(name) for name in group]
         lost = f"{_lost(sol, places):.6g}{_unit(sol)}" if sol.t.size else "nothing"
@@ -100,4 +101,3 @@ def _share(sol: Solution, group: tuple[str, ...], mode: int) -> str:
 
 #: More contacts than this are summed up in one line.
 MANY = 8
-_KINDS = ("stick", "slip", "open", "close", "reversal")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK
+from fricmb.integrate.event_kinds import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK
 from fricmb.integrate.run.told_once import told_once
 from fricmb.integrate.trajectory import Transitions
 

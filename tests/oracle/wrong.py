@@ -14,7 +14,7 @@ import sympy
 
 import fricmb as fm
 from fricmb.audit import Audit
-from fricmb.integrate.problem import EVENT_KINDS
+from fricmb.integrate.event_kinds import EVENT_KINDS
 from fricmb.integrate.trajectory import SampledTrajectory, Transitions
 
 RTOL = 1e-6

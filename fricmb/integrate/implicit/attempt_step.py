@@ -32,7 +32,7 @@ from fricmb.integrate.implicit.equations.slip_rows import slip_speed
 from fricmb.integrate.implicit.events.event_functions import has_come_to_rest, violated
 from fricmb.integrate.implicit.events.event_location import last_unique, locate_trigger
 from fricmb.integrate.implicit.events.load_kinks import find_kinks
-from fricmb.integrate.implicit.events.trigger_places import first_kink, is_of_port
+from fricmb.integrate.implicit.events.triggers import kind_of, owner
 from fricmb.integrate.implicit.modes.transition import change_modes
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.output.recorder import Record, copy_state, record_step
@@ -40,7 +40,7 @@ from fricmb.integrate.implicit.scene.control import Control, asked
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import Instant, State
-from fricmb.integrate.implicit.scene.watch import Watch
+from fricmb.integrate.implicit.scene.watch import KINK, LOAD, Watch
 from fricmb.integrate.implicit.stages.near_rest import nears_rest
 from fricmb.integrate.implicit.stages.one_step import (
     end_step,
@@ -118,6 +118,18 @@ def grow(mech: Mech, c: Control, out: Watch, k: Moving, y: State) -> None:
 
 
 @kernel
+def go_through(
+    mech: Mech, k: Moving, w: Instant, y: State, before: State, c: Control, out: Watch, rec: Record, part: Codes, j: int
+) -> int:
+    """Go through the transition of trigger j, or decide modes anew (-1): CHANGED, or why the run ends."""
+    c.growth = np.inf
+    if rec.used[0] > 0:
+        rec.after[rec.used[0] - 1] = 1
+    code = change_modes(mech, k, w, y, before, c, out, rec, part, j)
+    return CHANGED if code == DONE else code
+
+
+@kernel
 def arrive(
     mech: Mech, k: Moving, w: Instant, y: State, before: State, c: Control, out: Watch, rec: Record, part: Codes,
     stop: float,
@@ -126,11 +138,7 @@ def arrive(
     y.t = stop
     if stop >= c.span[1]:
         return DONE
-    c.growth = np.inf
-    code = change_modes(mech, k, w, y, before, c, out, rec, part, -1)
-    if rec.used[0] > 0:
-        rec.after[rec.used[0] - 1] = 1
-    return CHANGED if code == DONE else code
+    return go_through(mech, k, w, y, before, c, out, rec, part, -1)
 
 
 @kernel
@@ -217,11 +225,8 @@ def decide_anew(
     """Modes where no step gets any further: behind a bend, whose forces may jump by more than what rests can hold."""
     if pile_up(c, y.t):
         return FAIL_CHATTER
-    c.knot, c.growth = -np.inf, np.inf
-    if rec.used[0] > 0:
-        rec.after[rec.used[0] - 1] = 1
-    code = change_modes(mech, k, w, y, before, c, out, rec, part, -1)
-    return CHANGED if code == DONE else code
+    c.knot = -np.inf
+    return go_through(mech, k, w, y, before, c, out, rec, part, -1)
 
 
 @kernel
@@ -366,7 +371,7 @@ def attempt_step(
         c.sets_out = 0
     if near_singular(c, out, h):
         return FAIL_SINGULAR
-    if trigger >= first_kink(mech):
+    if kind_of(mech, trigger) == KINK:
         # a load that has a kink: nothing changes but the polynomials
         c.last_h = 0.0
         c.made = 0.0
@@ -383,10 +388,8 @@ def attempt_step(
         return get_away(mech, k, w, y, before, c, out, rec, part)
     if trigger >= 0:
         c.knot = -np.inf
-        rec.after[rec.used[0] - 1] = 1
-        c.growth = np.inf
-        lets_go = is_of_port(mech, trigger) and y.mode[trigger // 2] == STICK
-        code = change_modes(mech, k, w, y, before, c, out, rec, part, trigger)
+        lets_go = kind_of(mech, trigger) <= LOAD and y.mode[owner(mech, trigger)] == STICK
+        code = go_through(mech, k, w, y, before, c, out, rec, part, trigger)
         set_restart(mech, c, y, lets_go)
-        return CHANGED if code == DONE else code
+        return code
     return ACCEPTED

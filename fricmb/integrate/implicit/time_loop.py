@@ -13,13 +13,11 @@ from fricmb.integrate.implicit.between.between_stages import growth_of_slip
 from fricmb.integrate.implicit.equations.accelerations import react
 from fricmb.integrate.implicit.equations.projection import project_velocities
 from fricmb.integrate.implicit.equations.singular_position import start_watch, starts_dependent
-from fricmb.integrate.implicit.events.event_functions import triggers
 from fricmb.integrate.implicit.events.load_kinks import mark_bends
-from fricmb.integrate.implicit.events.trigger_places import first_joint, first_kink
 from fricmb.integrate.implicit.modes.mode_decision import decide, mark_rest
 from fricmb.integrate.implicit.modes.mode_enumeration import FOUND, SEVERAL
 from fricmb.integrate.implicit.modes.mode_trial import most_light
-from fricmb.integrate.implicit.modes.transition import bring_to_rest, let_go, take_given
+from fricmb.integrate.implicit.modes.transition import bring_to_rest, least_held, let_go, take_given
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.output.recorder import Record, crowded
 from fricmb.integrate.implicit.scene.control import Control
@@ -95,16 +93,12 @@ def begin(
     out.top_slip = max(out.top_slip, reach * np.sqrt(most_light(mech, k, y)))
     if margins(mech, k, w, y, out, True) <= 0.0:
         return FAIL_MARGIN
-    joints = first_joint(mech)
     mark_bends(mech, k, out)
     for _ in range(mech.joint.port.shape[0]):
-        triggers(mech, k, out, y.mode, y.n, y.F, y.N, y.g, y.lam, False)
-        worst = joints
-        for j in range(joints, first_kink(mech)):
-            worst = j if out.trigger[j] < out.trigger[worst] else worst
-        if out.trigger[worst] >= 0.0:
+        worst = least_held(mech, y, False)
+        if worst < 0:
             break
-        code = let_go(mech, k, w, y, out, worst - joints)
+        code = let_go(mech, k, w, y, out, worst)
         if code != DONE:
             return FAIL_SINGULAR if code == FAIL_SINGULAR else FAIL_LOST
         mark_rest(mech, y, small, part)

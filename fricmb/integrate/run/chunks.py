@@ -7,21 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from fricmb.integrate.problem import (
-    EVENT_CLOSE,
-    EVENT_OPEN,
-    EVENT_REVERSAL,
-    EVENT_SLIP,
-    EVENT_STICK,
-    LAW_SMOOTH,
-    OPEN,
-    SLIP,
-    Codes,
-    Contacts,
-    Floats,
-    Ints,
-    Start,
-)
+from fricmb.integrate.problem import Codes, Contacts, Floats, Ints, Start
+from fricmb.integrate.run.mode_changes import kind_of_change
 from fricmb.integrate.run.outcomes import FULL
 from fricmb.integrate.run.stop import ended, in_slices
 from fricmb.integrate.trajectory import Counters, Transitions
@@ -61,17 +48,11 @@ class Chunks:
         """
         if start.mode is None:
             return
+        was = n if start.direction is None else start.direction
         for c in range(contacts.row.size - 1):
-            before, now, first = int(start.mode[c]), int(mode[c]), int(contacts.row[c])
-            one = contacts.row[c + 1] - first == 1 and contacts.law[c] != LAW_SMOOTH
-            if before != now:
-                kind = EVENT_OPEN if now == OPEN else EVENT_CLOSE if before == OPEN else EVENT_STICK
-                kind = EVENT_SLIP if kind == EVENT_STICK and now == SLIP else kind
-            elif start.direction is not None and one and now == SLIP and n[first] * start.direction[first] < 0.0:
-                kind = EVENT_REVERSAL
-            else:
-                continue
-            self._events.insert(0, np.array([[start.t, c, kind]]))
+            kind = kind_of_change(contacts, c, int(start.mode[c]), int(mode[c]), was, n)
+            if kind >= 0:
+                self._events.insert(0, np.array([[start.t, c, kind]]))
 
     def fill(
         self, step: Callable[[], int], y: Any, memory: float | None, progress: Callable[[float], None] | None
@@ -93,14 +74,8 @@ class Chunks:
         return code
 
     def transitions(self) -> Transitions:
-        """All that were recorded, but for a reversal that ends in a stick at the same instant.
-
-        What comes to rest together with others may turn round first, by their round-off.
-        """
+        """All that were recorded."""
         event = np.concatenate(self._events) if self._events else np.zeros((0, 3))
-        at = np.flatnonzero(event[:, 2] == EVENT_REVERSAL)
-        stuck = {(t, k) for t, k, kind in event[event[:, 2] == EVENT_STICK].tolist()} if at.size else set()
-        event = np.delete(event, [i for i in at.tolist() if (event[i, 0], event[i, 1]) in stuck], axis=0)
         return Transitions(t=event[:, 0], contact=event[:, 1].astype(int), kind=event[:, 2].astype(int))
 
 

@@ -1,47 +1,56 @@
-"""Changes of modes, recorded as events."""
+"""Events put down in the kernels' recorder, and the kinds of those by which modes change.
+
+How many may come between two looks at the space that is left: ``implicit/output/recorder`` (``crowded``).
+"""
 
 from __future__ import annotations
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.problem import (
-    EVENT_CLOSE,
-    EVENT_OPEN,
-    EVENT_REVERSAL,
-    EVENT_SLIP,
-    EVENT_STICK,
-    LAW_SMOOTH,
-    OPEN,
-    SLIP,
-    STICK,
-    Floats,
-)
+from fricmb.integrate.event_kinds import EVENT_CLOSE, EVENT_OPEN, EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, IS_TRANSITION
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Floats
 from fricmb.integrate.run.room_protocols import Events, Laws, Modes
 
 #: Part of the time within which transitions are one instant (how near they are located: ``locate_trigger``).
 SAME_INSTANT = 1e-14
 
 
-@kernel
-def turned(ports: Laws, k: int, mode: int, n: Floats, old: Floats) -> bool:
-    """Whether one-dimensional slip of contact k has changed its sense."""
-    row0 = ports.row[k]
-    one = mode == SLIP and ports.law[k] != LAW_SMOOTH and ports.row[k + 1] - row0 == 1
-    return bool(one and n[row0] * old[row0] < 0.0)
+def kind_of_change(ports: Laws, c: int, old: int, now: int, was: Floats, n: Floats) -> int:
+    """Kind of the event by which contact c goes from one mode, and direction of slip, over to another; -1 for none."""
+    if now != old:
+        if now == OPEN:
+            return EVENT_OPEN
+        if old == OPEN:
+            return EVENT_CLOSE
+        return EVENT_STICK if now == STICK else EVENT_SLIP
+    row = ports.row[c]
+    one = now == SLIP and ports.law[c] != LAW_SMOOTH and ports.row[c + 1] - row == 1
+    return EVENT_REVERSAL if one and n[row] * was[row] < 0.0 else -1
+
+
+_kind_of_change = kernel(kind_of_change)
 
 
 @kernel
 def record_event(out: Events, t: float, contact: int, kind: int) -> None:
-    """Add a transition; a slip that ends at the instant at which it begins has not been one, and is taken back."""
+    """Add an event.
+
+    Slip that ends at the instant at which it begins has not been one, and is taken back; and what comes to rest
+    together with others may turn round first, by their round-off.
+    """
     k = out.used[1]
     last = k - 1
     while kind == EVENT_STICK and last >= 0 and t - out.event[last, 0] <= SAME_INSTANT * abs(t):
-        if out.event[last, 1] == contact:
-            if out.event[last, 2] != EVENT_SLIP:
+        before = int(out.event[last, 2])
+        if out.event[last, 1] == contact and IS_TRANSITION[before]:
+            if before != EVENT_SLIP and not (before == EVENT_REVERSAL and out.event[last, 0] == t):
                 break
-            for i in range(last, k - 1):
+            k -= 1
+            for i in range(last, k):
                 out.event[i] = out.event[i + 1]
-            out.used[1] = k - 1
-            return
+            if before == EVENT_SLIP:
+                out.used[1] = k
+                return
+            break
         last -= 1
     out.event[k, 0] = t
     out.event[k, 1] = contact
@@ -50,23 +59,9 @@ def record_event(out: Events, t: float, contact: int, kind: int) -> None:
 
 
 @kernel
-def record_changes(ports: Laws, t: float, y: Modes, old: Modes, out: Events) -> bool:
-    """Record an event at t for every contact whose mode, or sense of one-dimensional slip, is not that of ``old``.
-
-    Returns whether there are any.
-    """
-    some = False
+def record_changes(ports: Laws, t: float, y: Modes, old: Modes, out: Events) -> None:
+    """Record an event at t for every contact whose mode, or sense of one-dimensional slip, is not that of ``old``."""
     for c in range(y.mode.shape[0]):
-        kind = -1
-        if y.mode[c] != old.mode[c]:
-            kind = EVENT_STICK if y.mode[c] == STICK else EVENT_SLIP
-            if y.mode[c] == OPEN:
-                kind = EVENT_OPEN
-            elif old.mode[c] == OPEN:
-                kind = EVENT_CLOSE
-        elif turned(ports, c, y.mode[c], y.n, old.n):
-            kind = EVENT_REVERSAL
+        kind = _kind_of_change(ports, c, old.mode[c], y.mode[c], old.n, y.n)
         if kind >= 0:
             record_event(out, t, c, kind)
-            some = True
-    return some

@@ -11,7 +11,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, Floats, Ints
+from fricmb.integrate.event_kinds import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, IS_TRANSITION
+from fricmb.integrate.problem import Floats, Ints
 from fricmb.integrate.trajectory import Transitions
 
 #: One instant, as a part of the run, and of the time until the contact's next transition.
@@ -19,6 +20,7 @@ AT_ONCE, BRIEF = 1e-12, 1e-6
 #: The same where slip turns round and ends: what is left of it in a loop of contacts is known to no more.
 AT_REST = 1e-10
 #: What two transitions of a contact at one instant are together, none where slip goes on as before; and that instant.
+#: Slip that sticks at once is not even put down (``run/mode_changes``: ``record_event``).
 _TOGETHER = {
     (EVENT_SLIP, EVENT_REVERSAL): (EVENT_SLIP, AT_ONCE),
     (EVENT_REVERSAL, EVENT_STICK): (EVENT_STICK, AT_REST),
@@ -31,8 +33,9 @@ def told_once(transitions: Transitions, ends: tuple[float, float]) -> Transition
     if transitions.t.size < 2 or not (np.diff(np.sort(transitions.t)) <= AT_REST * (ends[1] - ends[0])).any():
         return transitions
     kept, kind = np.ones(transitions.t.size, dtype=bool), transitions.kind.copy()
+    change = IS_TRANSITION[kind]
     for c in np.unique(transitions.contact):
-        _join(np.flatnonzero(transitions.contact == c), transitions.t, ends, kept, kind)
+        _join(np.flatnonzero(change & (transitions.contact == c)), transitions.t, ends, kept, kind)
     if kept.all():
         return transitions
     return replace(transitions, t=transitions.t[kept], contact=transitions.contact[kept], kind=kind[kept])

@@ -14,17 +14,8 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.integrate.problem import (
-    EVENT_REVERSAL,
-    EVENT_SLIP,
-    EVENT_STICK,
-    SLIP,
-    STICK,
-    Contacts,
-    Floats,
-    Ints,
-    Problem,
-)
+from fricmb.integrate.event_kinds import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, IS_TRANSITION
+from fricmb.integrate.problem import SLIP, STICK, Contacts, Floats, Ints, Problem
 from fricmb.integrate.run.told_once import told_once
 from fricmb.integrate.trajectory import MotionSamples, Samples, Trajectory, Transitions
 
@@ -47,9 +38,10 @@ class WithoutTouches(Trajectory):
     def __init__(self, held: Trajectory, told: Transitions, contact: Ints, begin: Floats, end: Floats) -> None:
         self.held = held
         self.contact, self.begin, self.end_of_touch = contact, begin, end
+        others = ~IS_TRANSITION[told.kind]
         kept = np.ones(told.t.size, dtype=bool)
         for c, first, last in zip(contact, begin, end, strict=True):
-            kept &= (told.contact != c) | (told.t < first) | (told.t > last)
+            kept &= others | (told.contact != c) | (told.t < first) | (told.t > last)
         t, which, kind = (getattr(told, name)[kept] for name in ("t", "contact", "kind"))
         self.transitions = replace(told, t=t, contact=which, kind=kind)
         self.counters, self.end, self.failure = held.counters, held.end, held.failure
@@ -163,7 +155,7 @@ class Touch:
 
 def _candidates(told: Transitions, ends: tuple[float, float], c: int, rtol: float) -> list[Touch]:
     """Short sticks of contact c after a longer slip, and short slip back."""
-    mine = told.contact == c
+    mine = (told.contact == c) & IS_TRANSITION[told.kind]
     t, kind = told.t[mine], told.kind[mine]
     first, last = ends
     since, until = np.concatenate([[first], t[:-1]]), np.append(t[2:], [last, last])[: t.size]

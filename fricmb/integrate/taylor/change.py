@@ -7,7 +7,8 @@ import math
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.long_loops import long_loops
-from fricmb.integrate.problem import EVENT_SLIP, SLIP, STICK
+from fricmb.integrate.event_kinds import EVENT_SLIP
+from fricmb.integrate.problem import SLIP, STICK
 from fricmb.integrate.taylor.account import lose_sliding, pay, pay_touched
 from fricmb.integrate.taylor.correction import add_correction, correct, plain_force_change, plain_source
 from fricmb.integrate.taylor.event_heap import push_due

@@ -22,7 +22,8 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.problem import EVENT_SLIP, EVENT_STICK, SLIP, STICK
+from fricmb.integrate.event_kinds import EVENT_SLIP, EVENT_STICK
+from fricmb.integrate.problem import SLIP, STICK
 from fricmb.integrate.taylor.friction_curve import friction_at
 from fricmb.integrate.taylor.landing_path import ways_to_rest
 from fricmb.integrate.taylor.layout import AT_END, BEGUN, BENDS, EPS, LASTS, PULL, SLOWS

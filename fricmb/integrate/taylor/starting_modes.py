@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.compile.kernel import kernel, run_entry
-from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK
+from fricmb.integrate.event_kinds import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK
+from fricmb.integrate.problem import SLIP, STICK
 from fricmb.integrate.taylor.account import displacement, lose_sliding
 from fricmb.integrate.taylor.groups import SECOND
 from fricmb.integrate.taylor.landing import let_go, set_planar

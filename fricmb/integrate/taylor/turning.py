@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 
 from fricmb.integrate.compile.kernel import kernel
-from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK, SLIP, STICK
+from fricmb.integrate.event_kinds import EVENT_REVERSAL, EVENT_SLIP, EVENT_STICK
+from fricmb.integrate.problem import SLIP, STICK
 from fricmb.integrate.taylor.event_heap import push_due
 from fricmb.integrate.taylor.group_forces import factor_group, solve_group, stuck_contact
 from fricmb.integrate.taylor.layout import WORK

@@ -18,8 +18,8 @@ from fricmb.integrate.collocation.one_contact.step import (
 )  # fmt: skip
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.event_kinds import EVENT_REVERSAL, EVENT_STICK
 from fricmb.integrate.formulas.crossing import evaluate, lowest_between, polynomial, root_between
-from fricmb.integrate.problem import EVENT_REVERSAL, EVENT_STICK
 
 #: Part of its rate by which that of r changes on the way to 0, above which r is no straight line there.
 BENT = 0.1

@@ -31,8 +31,9 @@ from fricmb.integrate.collocation.one_contact.step import (
 from fricmb.integrate.collocation.one_contact.stick import AGAIN, NO_END, release_time
 from fricmb.integrate.compile.block import block
 from fricmb.integrate.compile.kernel import kernel, run_entry
+from fricmb.integrate.event_kinds import EVENT_SLIP
 from fricmb.integrate.formulas.step_control import ONE_STEP_SAFETY, step_factor
-from fricmb.integrate.problem import EVENT_SLIP, SLIP, STICK
+from fricmb.integrate.problem import SLIP, STICK
 from fricmb.integrate.run.outcomes import SLICE_OVER
 from fricmb.integrate.run.slices import slice_over, ticks
 

@@ -1,1 +1,1 @@
-"""Functions that end a mode as they fall below 0, and where in a step they do."""
+"""Functions that end a step as they fall below 0, and where in it they do."""

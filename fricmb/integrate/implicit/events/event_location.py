@@ -6,14 +6,14 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.formulas.crossing import evaluate, first_crossing, narrowed
-from fricmb.integrate.implicit.events.event_functions import gaps, grain, port_trigger, triggers, violated
-from fricmb.integrate.implicit.events.trigger_places import first_joint, is_gap, is_of_port
+from fricmb.integrate.implicit.events.event_functions import gaps, violated
+from fricmb.integrate.implicit.events.triggers import grain, is_gap, kind_of, owner, trigger, triggers
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.scene.control import Control
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import Instant, State
-from fricmb.integrate.implicit.scene.watch import Watch
+from fricmb.integrate.implicit.scene.watch import FRICTION, LOAD, Watch
 from fricmb.integrate.implicit.stages.one_step import step_to
 from fricmb.integrate.implicit.stages.stages import Stages
 from fricmb.integrate.run.breakpoints import EPS
@@ -58,7 +58,7 @@ def has_series(st: Stages) -> bool:
 @kernel
 def at_series(mech: Mech, k: Moving, end: State, st: Stages, out: Watch, j: int, h: float) -> float:
     """Trigger j of a port a time h behind the start of the series; the port's forces and slip go into ``end``."""
-    se, c = st.series, j // 2
+    se, c = st.series, owner(mech, j)
     at, N = h / se.length, 0.0
     for a in range(mech.port.row[c], mech.port.row[c + 1]):
         F, g = 0.0, 0.0
@@ -68,7 +68,7 @@ def at_series(mech: Mech, k: Moving, end: State, st: Stages, out: Watch, j: int,
     for i in range(se.terms - 1, -1, -1):
         N = N * at + se.N[i, c]
     end.N[c] = N
-    return port_trigger(mech, k, out, end.mode, end.n, end.F, end.N, end.g, j)
+    return trigger(mech, k, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True, j)
 
 
 @kernel
@@ -91,12 +91,6 @@ def by_series(mech: Mech, k: Moving, end: State, st: Stages, out: Watch, j: int,
 
 
 @kernel
-def is_load(mech: Mech, j: int) -> bool:
-    """Whether trigger j is the load of a contact: by Hertz it is next to nothing long before it is 0."""
-    return is_of_port(mech, j) and j % 2 == 1
-
-
-@kernel
 def locate_trigger(
     mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, out: Watch, h: float, first: int
 ) -> tuple[float, int]:
@@ -112,23 +106,20 @@ def locate_trigger(
         gaps(mech, k, y.t, y.q, y.v, y.lam, out)
     triggers(mech, k, out, y.mode, y.n, y.F, y.N, y.g, y.lam, True)
     j = first
-    opens = out.rate[first - first_joint(mech)] if is_gap(mech, first) else 0.0
+    opens = out.rate[owner(mech, first)] if is_gap(mech, first) else 0.0
     low, f_low = 0.0, max(out.trigger[j], 0.0)
-    if out.opened > 0:
-        gaps(mech, k, end.t, end.q, end.v, end.lam, out)
-    triggers(mech, k, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True)
-    high, f_high = h, min(out.trigger[j], 0.0)
+    high, f_high = h, min(out.inner[st.tab.c.shape[0], j], 0.0)
     moved = 0
     step = h
     left = np.inf
     # where friction ends or begins; loads that set in or bend are found from both sides
-    exact = (is_of_port(mech, first) and first % 2 == 0) or is_gap(mech, first)
+    exact = kind_of(mech, first) == FRICTION or is_gap(mech, first)
     guess, slope = by_polynomial(st, out, first, h) if inside >= 1.0 and exact else (-1.0, 0.0)
     if is_gap(mech, first) and out.inner[0, first] <= 10.0 * grain(mech, out, first, y):
         guess, slope = from_touch(st, out, first, h, opens), 0.0
     of_series = has_series(st)
     for i in range(80):
-        root = by_series(mech, k, end, st, out, j, low, high) if of_series and is_of_port(mech, j) else -1.0
+        root = by_series(mech, k, end, st, out, j, low, high) if of_series and kind_of(mech, j) <= LOAD else -1.0
         if root > 0.0:
             guess, slope = root, 0.0
         gap = f_low - f_high
@@ -161,12 +152,12 @@ def locate_trigger(
             j = worst
             high, f_high, f_low = step, min(out.trigger[j], 0.0), 0.0
             continue
-        if is_load(mech, j) and not of_series:
-            limit = 0.0
+        if kind_of(mech, j) == LOAD and not of_series:
+            limit = 0.0  # by Hertz a load is next to nothing long before it is 0
         if abs(value) <= limit or high - low <= 8.0 * EPS * max(abs(y.t), abs(h)):
             break
         if is_gap(mech, j):
-            slope = out.rate[j - first_joint(mech)]
+            slope = out.rate[owner(mech, j)]
         elif j != first or abs(value) > BETTER * left:
             slope = 0.0
         left, guess = abs(value), (step - value / slope if slope < 0.0 else -1.0)

@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from fricmb.integrate.event_kinds import EVENT_CLOSE, EVENT_IMPACT, EVENT_OPEN, EVENT_REST
 from fricmb.integrate.implicit.impacts.impact_law import Answer
 from fricmb.integrate.implicit.impacts.impact_rest import Hop
 from fricmb.integrate.mechanism import RIGID, Joints
-from fricmb.integrate.problem import EVENT_CLOSE, EVENT_IMPACT, EVENT_OPEN, EVENT_REST, Codes, Floats, Ints, Problem
+from fricmb.integrate.problem import Codes, Floats, Ints, Problem
 from fricmb.integrate.trajectory import IMPACT_COLUMNS, Transitions
 
 #: Impulse that is none, beside the largest at the instant.

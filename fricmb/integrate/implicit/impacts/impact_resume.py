@@ -11,7 +11,7 @@ from fricmb.integrate.implicit.modes.load_share import join_rest
 from fricmb.integrate.implicit.modes.mode_decision import decide
 from fricmb.integrate.implicit.modes.mode_enumeration import FOUND, SEVERAL
 from fricmb.integrate.implicit.modes.mode_trial import ARRIVES, RESTED, SLIPS_ON
-from fricmb.integrate.implicit.modes.transition import bears, let_go, set_out_anew, turn_with_slip
+from fricmb.integrate.implicit.modes.transition import bears, least_held, let_go, set_out_anew, turn_with_slip
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.output.recorder import Record, copy_state
 from fricmb.integrate.implicit.scene.control import Control
@@ -44,17 +44,6 @@ def parts_behind(mech: Mech, k: Moving, y: State, size: float, fresh: Codes, par
 
 
 @kernel
-def least_held(mech: Mech, y: State) -> int:
-    """The joint that would have to pull most among those that only push and may let go, or -1."""
-    joint, worst = mech.joint, -1
-    for j in range(joint.port.shape[0]):
-        held = joint.one_sided[j] != 0 and joint.hands_over[j] != 0 and joint.dropped[joint.row[j]] == 0
-        if held and y.lam[joint.row[j]] < 0.0 and (worst < 0 or y.lam[joint.row[j]] < y.lam[joint.row[worst]]):
-            worst = j
-    return worst
-
-
-@kernel
 def go_on(
     mech: Mech, k: Moving, w: Instant, y: State, c: Control, out: Watch, part: Codes, fresh: Codes
 ) -> int:
@@ -78,7 +67,7 @@ def go_on(
         if code != FOUND:
             margins(mech, k, w, y, out, True)
             return FAIL_SEVERAL if code == SEVERAL else FAIL_MODES
-        worst = least_held(mech, y)
+        worst = least_held(mech, y, True)
         if worst < 0:
             break
         code = let_go(mech, k, w, y, out, worst)

@@ -10,7 +10,7 @@ from fricmb.integrate.implicit.equations.instant_matrix import NONE, instant_mat
 from fricmb.integrate.implicit.equations.projection import project_velocities
 from fricmb.integrate.implicit.equations.singular_position import start_watch
 from fricmb.integrate.implicit.equations.slip_rows import lack, plane
-from fricmb.integrate.implicit.events.trigger_places import first_joint, is_of_port
+from fricmb.integrate.implicit.events.triggers import kind_of, owner
 from fricmb.integrate.implicit.modes.load_share import give_way, join_rest
 from fricmb.integrate.implicit.modes.mode_decision import decide
 from fricmb.integrate.implicit.modes.mode_enumeration import FOUND, SEVERAL
@@ -21,7 +21,7 @@ from fricmb.integrate.implicit.scene.control import Control
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import Instant, State
-from fricmb.integrate.implicit.scene.watch import Watch
+from fricmb.integrate.implicit.scene.watch import FRICTION, JOINT, LOAD, Watch
 from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes
 from fricmb.integrate.run.breakpoints import set_window
@@ -36,6 +36,19 @@ from fricmb.integrate.run.outcomes import (
     FAIL_SEVERAL,
     FAIL_SINGULAR,
 )
+
+
+@kernel
+def least_held(mech: Mech, y: State, may_open: bool) -> int:
+    """The joint that would have to pull most among those that only push, or -1; ``may_open``: of those that let go."""
+    joint, worst = mech.joint, -1
+    for j in range(joint.port.shape[0]):
+        held = joint.one_sided[j] != 0 and joint.dropped[joint.row[j]] == 0
+        if not held or (may_open and joint.hands_over[j] == 0) or y.lam[joint.row[j]] >= 0.0:
+            continue
+        if worst < 0 or y.lam[joint.row[j]] < y.lam[joint.row[worst]]:
+            worst = j
+    return worst
 
 
 @kernel
@@ -173,10 +186,12 @@ def change_modes(
 ) -> int:
     """Go through the transition of trigger j, or decide modes anew (-1): modes together with reactions, events."""
     n_c, row = y.mode.shape[0], mech.port.row
-    turn_with_slip(mech, k, y, out.top_slip, j // 2 if is_of_port(mech, j) else -1)
+    kind = kind_of(mech, j)
+    port = owner(mech, j) if kind in (FRICTION, LOAD) else -1
+    turn_with_slip(mech, k, y, out.top_slip, port)
     copy_state(y, before)
-    if j >= first_joint(mech):
-        code = let_go(mech, k, w, y, out, j - first_joint(mech))
+    if kind == JOINT:
+        code = let_go(mech, k, w, y, out, owner(mech, j))
         if code != DONE:
             return code
     set_window(c, k.s.window, y.t)
@@ -188,21 +203,19 @@ def change_modes(
         if y.mode[i] == SLIP and magnitude(row, i, y.g) <= max(1e-11 * out.top_slip, out.slow) and bears(mech, k, y, i):
             part[i] = ARRIVES
     forced = -1
-    if is_of_port(mech, j):
-        port = j // 2
-        if j % 2 == 1:
-            y.mode[port] = SLIP if y.mode[port] == OPEN else OPEN
-            if y.mode[port] == SLIP:
-                point_along(row, port, y.g, 1.0, y.n)
-                part[port] = ARRIVES if magnitude(row, port, y.g) <= 1e-11 * out.top_slip else SLIPS_ON
-        elif y.mode[port] == STICK:
-            forced = -1 if give_way(mech, k, w, y, part, LETS_GO) else port
-        elif plane(mech, port) or y.n[row[port]] * y.g[row[port]] >= -1e-11 * out.top_slip:
-            part[port] = ARRIVES
-        else:
-            # one that had no load to speak of has gone on through rest
-            part[port] = SLIPS_ON
-            y.n[row[port]] = -y.n[row[port]]
+    if kind == LOAD:
+        y.mode[port] = SLIP if y.mode[port] == OPEN else OPEN
+        if y.mode[port] == SLIP:
+            point_along(row, port, y.g, 1.0, y.n)
+            part[port] = ARRIVES if magnitude(row, port, y.g) <= 1e-11 * out.top_slip else SLIPS_ON
+    elif kind == FRICTION and y.mode[port] == STICK:
+        forced = -1 if give_way(mech, k, w, y, part, LETS_GO) else port
+    elif kind == FRICTION and (plane(mech, port) or y.n[row[port]] * y.g[row[port]] >= -1e-11 * out.top_slip):
+        part[port] = ARRIVES
+    elif kind == FRICTION:
+        # one that had no load to speak of has gone on through rest
+        part[port] = SLIPS_ON
+        y.n[row[port]] = -y.n[row[port]]
     join_rest(mech, k, w, y, part, 1e-9 * out.top_slip, ARRIVES)
     code = decide(mech, k, w, y, part, forced)
     if code != FOUND:

@@ -11,6 +11,9 @@ from fricmb.integrate.problem import Floats, Floats2, Ints, Pivots, Problem
 
 #: Joints that slip at once and are looked at together.
 MANY = 8
+#: Kinds of trigger, in their order (``events/triggers`` says what they are): the first two take turns, port by port;
+#: behind those of the joints there is one of each a port.
+FRICTION, LOAD, JOINT, KINK = KINDS = range(4)
 
 
 class Watch(Layout):
@@ -23,7 +26,7 @@ class Watch(Layout):
     direction among the constraints, ``reactions`` (m * ldab,) their columns in the banded matrix of an instant;
     ``sigma_end``, ``weak_end``, ``reactions_end`` the same at the end of a step; whether constraints are left out as
     ``redundant``, and none of this is heeded.
-    ``trigger`` (3 n_c + n_j,): what must not fall below 0; ``inner`` (s + 1, 3 n_c + n_j) the same at the start and the
+    ``trigger`` (n_t,), of all KINDS: what must not fall below 0; ``inner`` (s + 1, n_t) the same at the start and the
     stages of a step, ``rough`` by the forces of the last stage, ``where`` the part of the step at which only the
     polynomial through these is below 0, else 1; ``values`` (s,) and ``series`` (s + 1,) of one of them; ``gap`` (n_j,)
     of open joints, its ``rate`` and round-off ``grain`` (``least``: at least), ``opened`` how many there are;
@@ -78,7 +81,7 @@ class Watch(Layout):
 def watch_of(problem: Problem, stages: int) -> Watch:
     """Arrays for the problem and steps of so many stages; no joint is open."""
     m = mechanism_of(problem)
-    count = 3 * problem.n_c + len(m.joints.port)
+    count = (len(KINDS) - 1) * problem.n_c + len(m.joints.port)
     columns = m.n_rows * int(mech_of(problem).order.sizes[3])
     return Watch(
         np.ones(problem.n_c), 1.0, np.zeros(MANY, np.int64), np.zeros(MANY * MANY), np.zeros(MANY * MANY),

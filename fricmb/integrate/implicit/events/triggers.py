@@ -1,0 +1,147 @@
+"""Triggers: functions of the state at whose zero a step has to end; above it they are greater than 0.
+
+| kind | of each | what falls below 0 | what then happens |
+|---|---|---|---|
+| FRICTION | port | what stick could still bear; slip | ``modes/transition`` |
+| LOAD | port | its load, with the other sign where it is open | ``modes/transition`` |
+| JOINT | joint | the reaction of one that only presses; the distance of one that is open | as above; ``impacts`` |
+| KINK | port | see ``load_kinks`` | nothing: polynomials end there |
+
+To add a trigger: its kind behind the others in ``scene/watch``, with space for what it remembers (set at the start of
+a run by ``begin`` in ``time_loop``), and its value for each port in ``trigger``.  It is measured as a force, unless
+``grain`` says otherwise, and is seen at the ends and stages of steps, not between these.  What happens at it is said in
+``attempt_step`` beside KINK, where ``y`` is the state at it; an event is put down there by ``record_event(rec, y.t,
+owner(mech, trigger), EVENT_...)``.  A function that has passed 0 would end every step from there on: what goes on
+looks to the other side, by a sign that it remembers.  Nothing else knows kinds: ``event_functions`` and
+``event_location`` find any trigger, and ``bdf`` leaves the step around one to ``attempt_step``.
+"""
+
+from __future__ import annotations
+
+from fricmb.integrate.compile.kernel import kernel
+from fricmb.integrate.implicit.equations.forces import is_open
+from fricmb.integrate.implicit.equations.slip_rows import lack, may_open, plane, slip_speed, spare
+from fricmb.integrate.implicit.events.load_kinks import BEFORE, BEHIND, law_side
+from fricmb.integrate.implicit.scene.moving import Moving
+from fricmb.integrate.implicit.scene.problem_structs import Mech
+from fricmb.integrate.implicit.scene.state import State
+from fricmb.integrate.implicit.scene.watch import FRICTION, JOINT, KINK, LOAD, Watch
+from fricmb.integrate.model.law_values import magnitude
+from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes, Floats
+
+
+@kernel
+def first_joint(mech: Mech) -> int:
+    """The trigger of the first joint, behind those of ports."""
+    return int(2 * mech.port.joint.shape[0])
+
+
+@kernel
+def first_kink(mech: Mech) -> int:
+    """The trigger of the first kink: from it on there is one of each kind a port, and none ends a mode."""
+    return int(first_joint(mech) + mech.joint.port.shape[0])
+
+
+@kernel
+def kind_of(mech: Mech, j: int) -> int:
+    """Kind of trigger j, -1 where j is none."""
+    if j < first_joint(mech):
+        return -1 if j < 0 else (LOAD if j % 2 == 1 else FRICTION)
+    if j < first_kink(mech):
+        return JOINT
+    return int(KINK + (j - first_kink(mech)) // mech.port.joint.shape[0])
+
+
+@kernel
+def owner(mech: Mech, j: int) -> int:
+    """The port of trigger j, of a JOINT its joint."""
+    if j < first_joint(mech):
+        return j // 2
+    if j < first_kink(mech):
+        return int(j - first_joint(mech))
+    return int((j - first_kink(mech)) % mech.port.joint.shape[0])
+
+
+@kernel
+def is_gap(mech: Mech, j: int) -> bool:
+    """Whether trigger j is the distance of a joint that is open."""
+    return is_open(mech, j - first_joint(mech))
+
+
+@kernel
+def trigger(
+    mech: Mech, k: Moving, out: Watch, mode: Codes, direction: Floats, F: Floats, N: Floats, g: Floats, lam: Floats,
+    at_end: bool, j: int,
+) -> float:  # fmt: skip
+    """The value of trigger j; ``at_end`` of a step, where distances of open joints are known."""
+    kind, i = kind_of(mech, j), owner(mech, j)
+    if kind == FRICTION:
+        return friction(mech, k, out, mode, direction, F, N, g, i)
+    if kind == LOAD:
+        load = -N[i] if mode[i] == OPEN else N[i]
+        return float(load) if may_open(mech, i) else 1.0
+    if kind == JOINT:
+        if is_open(mech, i):
+            return float(out.gap[i]) if at_end else 1.0
+        return float(lam[mech.joint.row[i]]) if mech.joint.one_sided[i] else 1.0
+    return kink(mech, k, out, N, g, lam, i)
+
+
+@kernel
+def triggers(
+    mech: Mech, k: Moving, out: Watch, mode: Codes, direction: Floats, F: Floats, N: Floats, g: Floats, lam: Floats,
+    at_end: bool,
+) -> None:  # fmt: skip
+    """All triggers, into ``out.trigger``."""
+    for j in range(out.trigger.shape[0]):
+        out.trigger[j] = trigger(mech, k, out, mode, direction, F, N, g, lam, at_end, j)
+
+
+@kernel
+def friction(
+    mech: Mech, k: Moving, out: Watch, mode: Codes, direction: Floats, F: Floats, N: Floats, g: Floats, c: int
+) -> float:
+    """What port c could still bear where it sticks; its slip, which almost without load may turn as it likes."""
+    port = mech.port
+    if port.law[c] == LAW_SMOOTH or mode[c] == OPEN:
+        return 1.0
+    if mode[c] == STICK:
+        return spare(mech, k, c, F, N)
+    # away from rest slip has a direction of its own, and a force that passes through 0 none but round-off's
+    away = plane(mech, c) and k.form[c] == 0
+    speed = magnitude(port.row, c, g) if away else slip_speed(port.row, c, direction, F, g)
+    return float(speed + out.top_slip * lack(mech, k, c, N[c]))
+
+
+@kernel
+def kink(mech: Mech, k: Moving, out: Watch, N: Floats, g: Floats, lam: Floats, c: int) -> float:
+    """The kink of port c that a step has been found to have (``load_kinks``); 1 where it has none."""
+    if out.kinked[c] == 0:
+        return 1.0
+    if out.kinked[c] == BEFORE or out.kinked[c] == BEHIND:
+        side = law_side(mech, k, c, g, N)
+        return float(side if out.kinked[c] == BEFORE else -side)
+    joint, value = mech.joint, 0.0
+    j = mech.port.joint[c]
+    for r in range(joint.row[j], joint.row[j + 1]):
+        value += out.kink[r] * lam[r]
+    return float(value)
+
+
+@kernel
+def is_slip(mech: Mech, j: int, y: State) -> bool:
+    """Whether trigger j is a slip velocity (else a force)."""
+    return kind_of(mech, j) == FRICTION and y.mode[owner(mech, j)] == SLIP
+
+
+@kernel
+def grain(mech: Mech, out: Watch, j: int, y: State) -> float:
+    """Below this trigger j counts as 0, and its location ends: round-off of a distance, of a slip or of a force.
+
+    Of the last two it is that of the largest of the run so far.
+    """
+    if is_slip(mech, j, y):
+        return float(1e-13 * out.top_slip)
+    if is_gap(mech, j):
+        return float(max(out.grain[owner(mech, j)], 1e-290))
+    return float(1e-13 * out.top_force)
