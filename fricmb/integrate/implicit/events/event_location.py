@@ -7,7 +7,7 @@ import numpy as np
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.formulas.crossing import evaluate, first_crossing, narrowed
 from fricmb.integrate.implicit.events.event_functions import gaps, violated
-from fricmb.integrate.implicit.events.triggers import grain, is_gap, kind_of, owner, trigger, triggers
+from fricmb.integrate.implicit.events.triggers import friction, grain, is_gap, kind_of, load, owner, triggers
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.scene.control import Control
 from fricmb.integrate.implicit.scene.moving import Moving
@@ -68,7 +68,9 @@ def at_series(mech: Mech, k: Moving, end: State, st: Stages, out: Watch, j: int,
     for i in range(se.terms - 1, -1, -1):
         N = N * at + se.N[i, c]
     end.N[c] = N
-    return trigger(mech, k, out, end.mode, end.n, end.F, end.N, end.g, end.lam, True, j)
+    if kind_of(mech, j) == LOAD:
+        return load(mech, end.mode, end.N, c)
+    return friction(mech, k, out, end.mode, end.n, end.F, end.N, end.g, c)
 
 
 @kernel

@@ -7,13 +7,13 @@
 | JOINT | joint | the reaction of one that only presses; the distance of one that is open | as above; ``impacts`` |
 | KINK | port | see ``load_kinks`` | nothing: polynomials end there |
 
-To add a trigger: its kind behind the others in ``scene/watch``, with space for what it remembers (set at the start of
-a run by ``begin`` in ``time_loop``), and its value for each port in ``trigger``.  It is measured as a force, unless
-``grain`` says otherwise, and is seen at the ends and stages of steps, not between these.  What happens at it is said in
-``attempt_step`` beside KINK, where ``y`` is the state at it; an event is put down there by ``record_event(rec, y.t,
-owner(mech, trigger), EVENT_...)``.  A function that has passed 0 would end every step from there on: what goes on
-looks to the other side, by a sign that it remembers.  Nothing else knows kinds: ``event_functions`` and
-``event_location`` find any trigger, and ``bdf`` leaves the step around one to ``attempt_step``.
+To add a trigger: its kind behind the others in ``scene/watch``, with space for what it remembers (set at the start of a
+run by ``begin`` in ``time_loop``), and its value for each port in ``triggers``, n_c places behind that of the kind
+before it.  It is measured as a force, unless ``grain`` says otherwise, and is seen at the ends and stages of steps, not
+between these.  What happens at it is said in ``attempt_step`` beside KINK, where ``y`` is the state at it; an event is
+put down there by ``record_event(rec, y.t, owner(mech, trigger), EVENT_...)``.  A function that has passed 0 would end
+every step from there on: what goes on looks to the other side, by a sign that it remembers.  Nothing else knows kinds:
+``event_functions`` and ``event_location`` find any trigger, and ``bdf`` leaves the step around one to ``attempt_step``.
 """
 
 from __future__ import annotations
@@ -69,32 +69,20 @@ def is_gap(mech: Mech, j: int) -> bool:
 
 
 @kernel
-def trigger(
-    mech: Mech, k: Moving, out: Watch, mode: Codes, direction: Floats, F: Floats, N: Floats, g: Floats, lam: Floats,
-    at_end: bool, j: int,
-) -> float:  # fmt: skip
-    """The value of trigger j; ``at_end`` of a step, where distances of open joints are known."""
-    kind, i = kind_of(mech, j), owner(mech, j)
-    if kind == FRICTION:
-        return friction(mech, k, out, mode, direction, F, N, g, i)
-    if kind == LOAD:
-        load = -N[i] if mode[i] == OPEN else N[i]
-        return float(load) if may_open(mech, i) else 1.0
-    if kind == JOINT:
-        if is_open(mech, i):
-            return float(out.gap[i]) if at_end else 1.0
-        return float(lam[mech.joint.row[i]]) if mech.joint.one_sided[i] else 1.0
-    return kink(mech, k, out, N, g, lam, i)
-
-
-@kernel
 def triggers(
     mech: Mech, k: Moving, out: Watch, mode: Codes, direction: Floats, F: Floats, N: Floats, g: Floats, lam: Floats,
     at_end: bool,
 ) -> None:  # fmt: skip
-    """All triggers, into ``out.trigger``."""
-    for j in range(out.trigger.shape[0]):
-        out.trigger[j] = trigger(mech, k, out, mode, direction, F, N, g, lam, at_end, j)
+    """All triggers, into ``out.trigger``; ``at_end`` of a step, where distances of open joints are known."""
+    joints, kinks = first_joint(mech), first_kink(mech)
+    for c in range(mode.shape[0]):
+        out.trigger[2 * c] = friction(mech, k, out, mode, direction, F, N, g, c)
+        out.trigger[2 * c + 1] = load(mech, mode, N, c)
+        out.trigger[kinks + c] = kink(mech, k, out, N, g, lam, c)
+    for j in range(out.gap.shape[0]):
+        out.trigger[joints + j] = lam[mech.joint.row[j]] if mech.joint.one_sided[j] else 1.0
+        if is_open(mech, j):
+            out.trigger[joints + j] = out.gap[j] if at_end else 1.0
 
 
 @kernel
@@ -111,6 +99,14 @@ def friction(
     away = plane(mech, c) and k.form[c] == 0
     speed = magnitude(port.row, c, g) if away else slip_speed(port.row, c, direction, F, g)
     return float(speed + out.top_slip * lack(mech, k, c, N[c]))
+
+
+@kernel
+def load(mech: Mech, mode: Codes, N: Floats, c: int) -> float:
+    """The load of port c; of one that is open that with the other sign."""
+    if not may_open(mech, c):
+        return 1.0
+    return float(-N[c] if mode[c] == OPEN else N[c])
 
 
 @kernel
