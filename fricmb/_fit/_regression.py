@@ -9,7 +9,7 @@ motion.  States of laws are those of steady slip.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -34,8 +34,6 @@ _RESTS, _ENDS = (0.03, 0.003), 0.02
 _FAR = 1e3
 #: Starts of the least squares within the bounds.
 _STARTS = 4
-
-Curve = Callable[[Floats], Floats]
 
 
 def regress(

@@ -16,7 +16,6 @@ from ._style import THIN as THIN
 from ._style import finish as finish
 from ._style import theme as theme
 from ._style import use as use
-from ._units import SCENE_UNITS as SCENE_UNITS
 from ._units import Units as Units
 
 __all__ = [
@@ -24,7 +23,6 @@ __all__ = [
     "COLOURS",
     "DARK",
     "ORANGE",
-    "SCENE_UNITS",
     "THIN",
     "BranchPlots",
     "DiagramPlots",

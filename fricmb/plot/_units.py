@@ -7,16 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from fricmb.scene import Torque, TorsionDamper, TorsionSpring
 from fricmb.solution import owner_of
-from fricmb.values import DIMENSIONS, Units
+from fricmb.values import Units
 
 if TYPE_CHECKING:
     from fricmb.solution import Solution
 
-#: Labels for a scene whose units are not known.
-SCENE_UNITS = DIMENSIONS
-
 __all__ = [
-    "SCENE_UNITS", "Units", "bare", "is_angle", "is_direction", "unit_in_scene", "unit_of", "unit_of_rate",
+    "Units", "bare", "is_angle", "is_direction", "unit_in_scene", "unit_of", "unit_of_rate",
     "unit_of_signal",
 ]  # fmt: skip
 

@@ -28,8 +28,6 @@ from fricmb.values import is_expression, is_one_of, value_of
 
 #: A disc lies flat where the sine of its angle with the plane is no more than this.
 FLAT = 1e-3
-#: What touches the plane, by what is declared.
-SHAPES = ("ball", "edge", "tip", "point")
 
 
 @dataclass(frozen=True, eq=False)

@@ -51,13 +51,12 @@ class JointArrays:
     side: list[int] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
     loaded_by: list[str] = field(default_factory=list)
-    forms: list[tuple[Row, ...]] = field(default_factory=list)
 
     def lists(self) -> tuple[list[Any], ...]:
         """See :class:`Growing`."""
         return (
             self.table.entries, self.rows, self.one_sided, self.hands_over, self.inner, self.impact,
-            self.side, self.names, self.loaded_by, self.forms,
+            self.side, self.names, self.loaded_by,
         )  # fmt: skip
 
     def marks(self) -> tuple[int, ...]:
@@ -89,7 +88,6 @@ class JointArrays:
         self.inner.append(int(inner))
         self.names.append(joint.name)
         self.loaded_by.append(joint.loaded_by or joint.name)
-        self.forms.append(tuple(rows))
 
     def _drive(self, joint: Joint, i: int, drive: tuple[str, Any, float]) -> Row:
         given, value, start = drive

@@ -119,7 +119,6 @@ def build_mechanism(scene: Any, plan: Any) -> MechanismSystem:
         switches=searched,
         series=series_of(timed, scene),
         leaps=leaps_of(scene, signals.index),
-        joint_forms=dict(zip(joints.names, joints.forms, strict=True)),
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -13,17 +13,11 @@ from fricmb.integrate.model.table_values import _each
 from fricmb.integrate.problem import OPEN, Codes, Floats, Start
 from fricmb.integrate.trajectory import MotionSamples
 from fricmb.system._system import System
-from fricmb.system._tables import Row
 
 
 @dataclass(frozen=True, kw_only=True)
 class MechanismSystem(System):
-    """See :class:`System`.
-
-    ``joint_forms``: local coordinates of every joint by its name.
-    """
-
-    joint_forms: dict[str, tuple[Row, ...]] = field(default_factory=dict)
+    """See :class:`System`."""
 
     @property
     def mechanism(self) -> Mechanism:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -34,11 +33,6 @@ class Point:
     def slope(self) -> float:
         """Of the parameter along the branch."""
         return float(self.forward[-1])
-
-    @cached_property
-    def step_columns(self) -> Floats:
-        """Residual's derivative by start, period and parameter, scaled as ``forward``."""
-        return columns(self.orbit, self.over, self.p_scale)
 
 
 def columns(orbit: Orbit, over: str, p_scale: float) -> Floats:
