@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import importlib.util
+import sys
 from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING, Any
 
-from fricmb._simulate._put_off import put_off_f2py
+import numpy as np
+
 from fricmb.integrate.run.one_thread import one_thread
 
 if TYPE_CHECKING:
@@ -22,3 +25,20 @@ def blas_threads(scene: Scene) -> AbstractContextManager[Any]:
         return nullcontext()
     put_off_f2py()
     return one_thread()
+
+
+_NAME = "numpy.f2py"
+
+
+def put_off_f2py() -> None:
+    """Let numpy's translator of Fortran load when it is used.
+
+    SciPy asks numpy for each of its parts by name when it is loaded, and numpy loads those it had put off.
+    """
+    spec = None if _NAME in sys.modules else importlib.util.find_spec(_NAME)
+    if spec is None or spec.loader is None:
+        return
+    spec.loader = importlib.util.LazyLoader(spec.loader)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[_NAME] = np.f2py = module
+    spec.loader.exec_module(module)

@@ -12,8 +12,30 @@ from typing import Any
 
 import fricmb as fm
 from fricmb.cli._load import load
-from fricmb.cli._parts import PURPOSES
 from fricmb.models import catalogue
+
+#: Names in ``fm`` and ``fm.space``, by purpose.
+PURPOSES: dict[str, tuple[str, ...]] = {
+    "bodies": (
+        "Body", "RigidBody", "ModalBody", "Driven", "space.Ball", "space.Rotor", "space.RigidBody",
+    ),
+    "joints that hold": (
+        "Revolute", "Prismatic", "Fixed", "Rod", "space.Revolute", "space.Prismatic", "space.Cylindrical",
+        "space.Spherical", "space.Universal", "space.Fixed", "space.Rod",
+    ),
+    "surfaces that something slides or rolls on": (
+        "RollerOnLine", "RollerOnCircle", "Wheel", "space.OnPlane", "space.InCylinder", "space.WheelRail",
+    ),
+    "friction": ("Contact", "DryFriction", "space.DryFriction", "space.Pad"),
+    "springs and dampers": (
+        "Spring", "Damper", "PointSpring", "PointDamper", "TorsionSpring", "TorsionDamper", "MatrixElement",
+    ),
+    "stops, play, and the law of impact": ("Stop", "Backlash", "ImpactLaw"),
+    "transmissions": ("Gear", "Rope"),
+    "drives and loads": (
+        "Force", "Torque", "Gravity", "DrivenAngle", "DrivenSlide", "space.Torque", "space.DrivenSpin",
+    ),
+}  # fmt: skip
 
 
 def show_list(options: argparse.Namespace) -> int:

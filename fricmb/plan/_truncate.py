@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fricmb.plan._loads import highest_frequency
 from fricmb.reduction import Residual, flexibility, modal_residual, modes_to_keep
 from fricmb.scene import Contact, Element, ModalBody, Point, Scene, modal_matrices
-from fricmb.values import value_of
+from fricmb.values import is_expression, value_of
 
 Floats = NDArray[np.float64]
 
@@ -148,3 +148,33 @@ def _with_residual(
 def _starts(body: ModalBody, dof: str) -> bool:
     key = dof.partition(".")[2]
     return any(value_of(values.get(key, 0.0)) != 0.0 for values in (body.position, body.velocity))
+
+
+def highest_frequency(scene: Scene) -> float:
+    """Largest angular frequency of ``sin`` and ``cos`` of time in the scene's expressions; 0 where there is none.
+
+    Of a phase that is not linear in time nothing can be said before the run; it counts nothing.
+    """
+    return max((omega for value in _expressions(scene) for omega in _frequencies(value)), default=0.0)
+
+
+def _expressions(scene: Scene) -> Iterator[Any]:
+    for part in scene.parts:
+        for field in dataclasses.fields(part):
+            value = getattr(part, field.name)
+            inside = value.values() if isinstance(value, Mapping) else value if isinstance(value, tuple) else (value,)
+            yield from (entry for entry in inside if is_expression(entry))
+
+
+def _frequencies(value: Any) -> Iterator[float]:
+    import sympy
+
+    from fricmb.values._symbols import TIME
+
+    for wave in value.atoms(sympy.sin, sympy.cos):
+        try:
+            omega = abs(float(value_of(sympy.diff(wave.args[0], TIME))))
+        except TypeError:
+            continue
+        if np.isfinite(omega):
+            yield omega

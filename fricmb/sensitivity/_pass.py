@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from fricmb._simulate._asked import STATE
 from fricmb.errors import SceneError
 from fricmb.integrate.problem import Floats
+from fricmb.integrate.trajectory import Samples
 from fricmb.scene import RigidBody
 from fricmb.sensitivity._bends import bends_of
 from fricmb.sensitivity._collocation import radau
@@ -22,7 +23,6 @@ from fricmb.sensitivity._landings import extrapolated, near_misses, passes, plac
 from fricmb.sensitivity._mesh import STAGES, Stepper, mesh_of
 from fricmb.sensitivity._phases import phases_of
 from fricmb.sensitivity._setting_out import SettingOut, set_outs
-from fricmb.sensitivity._sizes import sizes
 from fricmb.sensitivity._starts import held, one_sided
 from fricmb.sensitivity._steep import steep
 from fricmb.sensitivity._transitions import Transitions
@@ -226,3 +226,24 @@ def _check(sol: Any, equations: Equations) -> None:
         raise SceneError(
             f"sensitivities: the scene has {equations.n_y} states; the limit is {MOST}, because maps of steps are dense"
         )
+
+
+#: Speeds count from this share of what all energy of motion would bring about in a coordinate, states of a law from
+#: this share of the largest of the same contact.
+_SHARE = 1e-4
+
+
+def sizes(samples: Samples, mass: Floats, counts: Sequence[int]) -> Floats:
+    """Sizes of q, v and z (n_y,) in a run; ``mass`` (n,) of the coordinates, ``counts`` of states by contact.
+
+    What hardly moves, or by round-off alone, has the speed that a hundred-millionth of the energy would give it, and
+    the way that this is in the longest step: else its relative error would decide how fine steps are.
+    """
+    energy = float((mass[:, None] * samples.v**2).sum(axis=0).max(initial=0.0))
+    least = _SHARE * np.sqrt(energy / mass)
+    v = np.maximum(np.abs(samples.v).max(axis=1, initial=0.0), least)
+    q = np.maximum(np.abs(samples.q).max(axis=1, initial=0.0), least * np.diff(samples.t).max(initial=0.0))
+    z = np.abs(samples.z).max(axis=1, initial=0.0)
+    for own in np.split(z, np.cumsum(counts)[:-1]):
+        own[:] = np.maximum(own, _SHARE * own.max(initial=0.0))
+    return np.concatenate([np.where(x > 0.0, x, x.max(initial=0.0) or 1.0) for x in (q, v, z)])

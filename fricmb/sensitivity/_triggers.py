@@ -6,15 +6,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fricmb.integrate.problem import STICK, Floats
+from fricmb.integrate.problem import STICK, Codes, Floats
 from fricmb.integrate.run.chunked_run import take
 from fricmb.integrate.trajectory import Samples
 from fricmb.sensitivity._directions import across
 from fricmb.sensitivity._dual import Dual
 from fricmb.sensitivity._equations import Equations, Field
-from fricmb.sensitivity._found import at
+from fricmb.sensitivity._found import Found, at, whole
+from fricmb.sensitivity._friction import Friction
 from fricmb.sensitivity._happenings import Happening
-from fricmb.sensitivity._loops import about_to_slip
 from fricmb.sensitivity._phases import Phases
 
 
@@ -186,3 +186,40 @@ class Triggers:
             event=event, contact=k, residual=abs(N) / max(largest, 1e-300), slopes=slopes, rate=rate or 1e-300,
             transversality=abs(rate) / parts,
         )  # fmt: skip
+
+
+def about_to_slip(
+    e: Equations, samples: Samples, mode: Codes, sign: Floats, contacts: list[int]
+) -> dict[int, tuple[float, Floats, float]] | None:
+    """Relative acceleration of each contact that lets go, along its slip, with its slopes and size, at one time.
+
+    ``mode`` (n_c,), ``sign`` (m,): those of the phase that begins.  The size is what friction at its limit makes of it.
+    None in two directions and where rows vary.
+    """
+    if any(e.contacts[k].d > 1 for k in contacts):
+        return None
+    field = e.field(samples, mode[:, None], sign[:, None])
+    rows = field.found.rows
+    if any(isinstance(c, Dual) for k in contacts for _, c in rows[k][0]):
+        return None
+    W = np.zeros((e.n, len(contacts)))
+    for r, k in enumerate(contacts):
+        for i, c in rows[k][0]:
+            W[i, r] += c
+    free = e.free(field.found, mode, 0)
+    along = np.array([float(sign[e.rows(k)][0]) for k in contacts])
+    more = [_more(e.contacts[k], field.found, k, sign[e.rows(k)]) for k in contacts]
+    value, slopes = whole(more, 1, e.columns)
+    a = field.a[0] + free @ W @ value[0]
+    a_slopes = field.a_slopes[0] + free @ W @ slopes[0]
+    drift, drift_slopes = whole([field.found.drift[k][0] for k in contacts], 1, e.columns)
+    g, g_slopes = along * (W.T @ a + drift[0]), along[:, None] * (W.T @ a_slopes + drift_slopes[0])
+    limits = np.array([at(field.found.limit[k].value, 0) for k in contacts])
+    size = np.abs(W.T @ free @ W) @ np.abs(limits)
+    return {k: (float(g[r]), g_slopes[r], float(size[r])) for r, k in enumerate(contacts)}
+
+
+def _more(contact: Friction, found: Found, k: int, sign: Floats) -> Dual:
+    """What friction at its limit is more than that of slip, as a force."""
+    slipping = contact.beginning(found.N[k], sign[:, None])[0]
+    return found.limit[k] * -float(sign[0]) + slipping * -1.0

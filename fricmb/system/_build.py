@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import weakref
-from collections.abc import Sequence
+from collections.abc import Callable, Hashable, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
+from fricmb.equations import Signal
 from fricmb.integrate.problem import Contacts, Floats, Input, Linear, Problem, Start
 from fricmb.integrate.problem import Signals as SignalArrays
-from fricmb.scene import Body, Contact, Element, Gravity, MatrixElement, ModalBody
-from fricmb.scene._family import NUMBERS, STARTS
+from fricmb.scene import Body, Contact, Element, Gravity, MatrixElement, ModalBody, Part, Scene
+from fricmb.scene._family import NUMBERS, STARTS, of_same_parts
 from fricmb.scene._family_of import SMALL
 from fricmb.scene._lines import lines_of
 from fricmb.system import _motions
@@ -24,7 +25,7 @@ from fricmb.system._inputs import forces_of, inputs_of
 from fricmb.system._leaps import leaps_of
 from fricmb.system._lined import Chosen, add_lines, choose
 from fricmb.system._mechanism import build_mechanism
-from fricmb.system._same_parts import half_of
+from fricmb.system._motions import Signals
 from fricmb.system._series import series_of
 from fricmb.system._shares import add_share, is_equal_but_start, shares_of
 from fricmb.system._spectrum import check_mass, check_masses, spectrum, uncoupled_spectrum
@@ -207,3 +208,26 @@ def _system(
         for element, rows in structure.nonlinear:
             check_initial(element, rows, q, u)
     return system
+
+
+_T = TypeVar("_T")
+
+
+def half_of(
+    scene: Scene, key: tuple[Hashable, ...], parts: Sequence[Part], signals: Signals, build: Callable[[], _T],
+    but: frozenset[str],
+) -> _T:  # fmt: skip
+    """What ``build`` makes of some parts, or made of them for another scene; what it adds to the signals is added.
+
+    ``key``: which half it is, and for which degrees of freedom; ``but``: fields of bodies that it does not depend on.
+    """
+    before = tuple(signals.index)
+
+    def make() -> tuple[list[tuple[str, Signal]], _T]:
+        built = build()
+        return list(zip(signals.index, signals.held, strict=True))[len(before) :], built
+
+    added, built = of_same_parts(scene, (*key, before), parts, make, but=but)
+    for name, signal in added[len(signals.index) - len(before) :]:  # none of what was built just now
+        signals.put(name, signal)
+    return built

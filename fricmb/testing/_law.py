@@ -7,11 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from fricmb._calls import answers
-from fricmb.analysis import compiled_force
+from fricmb.analysis import compiled_force, cycle, settling_distance
 from fricmb.errors import shown
 from fricmb.laws import FrictionLaw
 from fricmb.testing._base import ConformanceError, Floats, Rule, findings, pickles
-from fricmb.testing._law_states import STATE_RULES
 from fricmb.testing._refusal import refuses
 from fricmb.testing._trial import AT_REST, SPEEDS, random_state, velocities
 from fricmb.values import value_of
@@ -174,3 +173,33 @@ def _jacobian(law: FrictionLaw, normal_force: float) -> Iterator[str]:
                 if ((given < np.minimum(*slopes) - allowed) | (given > np.maximum(*slopes) + allowed)).any():
                     yield f"the Jacobian at x = [v, N, z] = {x.tolist()} is wrong in column {a}: {given.tolist()}"
                     return
+
+
+def _rates(law: FrictionLaw, normal_force: float) -> Iterator[str]:
+    for d in law.dimensions:
+        state = random_state(law, d)
+        for v in [np.zeros(d), *velocities(d)]:
+            rate = np.asarray(law.rate(v, normal_force, state))
+            if not np.isfinite(rate).all():
+                yield f"rate at v = {v.tolist()} is {rate.tolist()}"
+        rest = np.asarray(law.rate(np.zeros(d), normal_force, state))
+        if law.rests and (np.abs(rest) > AT_REST).any():
+            yield f"states move at rest: rate {rest.tolist()}"
+
+
+#: Amplitudes of the cycles, as shares and multiples of the distance over which states settle.
+_AMPLITUDES = (0.3, 3.0, 30.0)
+
+
+def _cycles(law: FrictionLaw, normal_force: float) -> Iterator[str]:
+    """Work over a closed cycle, when states have come to repeat: friction takes it, or at least gives none."""
+    length = settling_distance(law, normal_force)
+    for share in _AMPLITUDES:
+        loop = cycle(law, amplitude=share * length, period=2e3 * np.pi * share * length, normal_force=normal_force)
+        if not np.isfinite(loop.force).all():
+            yield f"force over a cycle of amplitude {share * length:g} is not finite"
+        elif loop.work > 1e-6 * loop.amplitude * np.abs(loop.force).max():
+            yield f"a cycle of amplitude {share * length:g} gains the work {loop.work:g}"
+
+
+STATE_RULES: tuple[Rule, ...] = (_rates, _cycles)

@@ -185,7 +185,7 @@ def test_a_failed_run_keeps_its_files_and_ends_with_3(capsys, tmp_path):
 
 
 def test_every_part_is_listed_by_what_it_is_for():
-    from fricmb.cli._parts import PURPOSES
+    from fricmb.cli._show import PURPOSES
 
     listed = [name for names in PURPOSES.values() for name in names]
     places = (("", fm), ("space.", fm.space))
