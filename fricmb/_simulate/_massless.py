@@ -29,10 +29,7 @@ _ADVICE = (
 
 def with_masses(scene: Scene) -> Scene:
     """The scene that is solved, with what is said of it; itself where every body has its mass."""
-    found = scene._cache.get("with masses")
-    if not isinstance(found, Scene):
-        found = scene._cache["with masses"] = _with_masses(scene)
-    return found
+    return scene._once("with masses", lambda: _with_masses(scene))
 
 
 def _with_masses(scene: Scene) -> Scene:

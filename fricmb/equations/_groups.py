@@ -51,11 +51,8 @@ def groups_of(elements: Sequence[Any]) -> list[Group]:
 
 def element_groups(scene: Scene) -> list[Group]:
     """Those of a scene's lines (``index``: of ``lines_of(scene).elements``); kept with it."""
-    found = scene._cache.get("element groups")
-    if found is None:
-        lines = lines_of(scene).elements
-        found = scene._cache["element groups"] = groups_of(parts_at(scene, lines.at))
-    return list(found)
+    lines = lines_of(scene).elements
+    return list(scene._once("element groups", lambda: groups_of(parts_at(scene, lines.at))))
 
 
 def _group(elements: Sequence[Any], index: list[int]) -> Group:

@@ -119,12 +119,11 @@ def scene_equations(scene: Any, *, joint_coordinates: bool = False) -> SceneEqua
     """The equations of motion of a scene."""
     if not is_flag(joint_coordinates):
         raise SceneError(f"equations: joint_coordinates must be True or False, got {shown(joint_coordinates)}")
-    key = "equations in joint coordinates" if joint_coordinates else "equations"
-    found = scene._cache.get(key)
-    if found is None:
-        found = in_joint_coordinates(scene, scene_equations(scene)) if joint_coordinates else _derive(scene)
-        scene._cache[key] = found
-    return found  # type: ignore[no-any-return]
+    plain: SceneEquations = scene._once("equations", lambda: _derive(scene))
+    if not joint_coordinates:
+        return plain
+    found: SceneEquations = scene._once("equations in joints", lambda: in_joint_coordinates(scene, plain))
+    return found
 
 
 def _derive(scene: Any) -> SceneEquations:

@@ -61,10 +61,7 @@ def make_plan(scene: Scene, observe: Iterable[str] | None = None) -> Plan:
     scene = short.scene
     wanted = None if observe is None else _targets(scene, tuple(observe))
     key = ("plan", None if wanted is None else wanted.key)
-    found = scene._cache.get(key)
-    if found is None:
-        found = scene._cache[key] = _plan_of(scene, wanted, (*short.notes, *remarks(scene)))
-    return found
+    return scene._once(key, lambda: _plan_of(scene, wanted, (*short.notes, *remarks(scene))))
 
 
 #: Plans that scenes which differ in numbers alone keep together.

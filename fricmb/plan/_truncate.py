@@ -34,10 +34,7 @@ class Truncated:
 
 def truncated(scene: Scene) -> Truncated:
     """The scene with the modal bodies that allow a truncation reduced; kept with the scene."""
-    found = scene._cache.get("truncated")
-    if not isinstance(found, Truncated):
-        found = scene._cache["truncated"] = _truncate(scene)
-    return found
+    return scene._once("truncated", lambda: _truncate(scene))
 
 
 def _truncate(scene: Scene) -> Truncated:

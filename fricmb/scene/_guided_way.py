@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from fricmb.scene._axes import check_axis
 from fricmb.scene._forms import LinearForm
 from fricmb.scene._joints import Prismatic
-from fricmb.scene._one_coordinate import joint_ends
+from fricmb.scene._one_coordinate import ANGLE, joint_ends, one_coordinate
 from fricmb.scene._rigid import angle_of, plane_motion
 
 #: Axis of a part whose coordinate is that of a guide.
@@ -31,6 +32,17 @@ def is_on_guide(part: Any) -> bool:
     if part.angle is not None:
         part._refuse("angle", part.angle, "left out: a guide brings it")
     return False
+
+
+def check_way(part: Any) -> None:
+    """Refuse an axis that is not accepted, and take what a joint stands for."""
+    if isinstance(part.axis, Prismatic):
+        take_guide(part, part.axis)
+    if is_on_guide(part):
+        return
+    b, axis = one_coordinate(part, part.a, part.b, part.axis)
+    part._set("b", b)
+    part._set("axis", axis if axis == ANGLE else check_axis(part, "axis", axis))
 
 
 def guide_coordinates(part: Any) -> tuple[LinearForm, LinearForm, LinearForm]:

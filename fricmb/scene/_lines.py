@@ -65,10 +65,7 @@ class Lines:
 
 def lines_of(scene: Scene) -> Lines:
     """The lines of a scene; kept with it."""
-    found = scene._cache.get("lines")
-    if not isinstance(found, Lines):
-        found = scene._cache["lines"] = _find(scene)
-    return found
+    return scene._once("lines", lambda: _find(scene))
 
 
 def _find(scene: Scene) -> Lines:

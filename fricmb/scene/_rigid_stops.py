@@ -6,12 +6,11 @@ from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 from fricmb.errors import SceneError
-from fricmb.scene._axes import check_axis, direction
+from fricmb.scene._axes import direction
 from fricmb.scene._forms import LinearForm
-from fricmb.scene._guided_way import along, guide_coordinates, is_on_guide, take_guide
+from fricmb.scene._guided_way import along, check_way, guide_coordinates
 from fricmb.scene._joint import Joint
-from fricmb.scene._joints import Prismatic
-from fricmb.scene._one_coordinate import ANGLE, one_coordinate
+from fricmb.scene._one_coordinate import ANGLE
 from fricmb.scene._restitution import check_restitution
 from fricmb.scene._rigid import angle_of
 from fricmb.scene._turning import relative_angle
@@ -39,13 +38,7 @@ class _RigidLimits(Joint):
 
     def _check_axis(self) -> None:
         """Refuse an axis that is not accepted, and take what a joint stands for."""
-        if isinstance(self.axis, Prismatic):
-            take_guide(self, self.axis)
-        if is_on_guide(self):
-            return
-        b, axis = one_coordinate(self, self.a, self.b, self.axis)
-        self._set("b", b)
-        self._set("axis", axis if axis == ANGLE else check_axis(self, "axis", axis))
+        check_way(self)
 
     def _check_limits(self) -> None:
         """Refuse limits that are not accepted."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,9 @@ if TYPE_CHECKING:
     from fricmb.analysis import NaturalModes
     from fricmb.equations._scene import SceneEquations
     from fricmb.plan import Plan
+
+_Made = TypeVar("_Made")
+_Point = TypeVar("_Point", RigidPoint, SpacePoint)
 
 #: Parts with degrees of freedom.
 BODIES = (Body, ModalBody, RigidBody, SpaceBody)
@@ -115,6 +118,13 @@ class Scene:
         if shared is None:  # what was found wrong above joins no family
             put(self, "_shared", family_of(name, self.parts))
 
+    def _once(self, key: Any, make: Callable[[], _Made]) -> _Made:
+        """What ``make`` makes of this scene; kept with it."""
+        if key not in self._cache:
+            self._cache[key] = make()
+        found: _Made = self._cache[key]
+        return found
+
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"Scene {self.name!r} cannot be changed; use replace() or with_parameters()")
 
@@ -136,10 +146,7 @@ class Scene:
     @property
     def driven(self) -> tuple[Driven, ...]:
         """Parts whose motion is prescribed."""
-        found = self._cache.get("driven")
-        if found is None:
-            found = self._cache["driven"] = tuple(part for part in self.parts if isinstance(part, Driven))
-        return tuple(found)
+        return self._once("driven", lambda: tuple(part for part in self.parts if isinstance(part, Driven)))
 
     @property
     def elements(self) -> tuple[Element, ...]:
@@ -170,12 +177,8 @@ class Scene:
     @property
     def is_mechanism(self) -> bool:
         """Whether bodies turn or joints tie them, so that kinematics is not linear."""
-        found = self._cache.get("mechanism")
-        if found is None:
-            found = self._cache["mechanism"] = any(
-                isinstance(part, RigidBody | SpaceBody | Joint) for part in self.parts
-            )
-        return bool(found)
+        turning = RigidBody | SpaceBody | Joint
+        return self._once("mechanism", lambda: any(isinstance(part, turning) for part in self.parts))
 
     @property
     def points(self) -> dict[str, Point]:
@@ -192,18 +195,9 @@ class Scene:
         SceneError
             If one name stands for two places.
         """
-        known = self._cache.get("rigid points")
-        if known is not None:
-            return dict(known)
-        bodies = [part for part in self.parts if isinstance(part, RigidBody)]
-        found = {f"{body.name}.{point}": body.point(point) for body in bodies for point in body.points}
-        for part in self.parts if bodies else ():
-            for end in part.ends():
-                if isinstance(end, RigidPoint) and found.setdefault(end.end_name, end).offset != end.offset:
-                    held = found[end.end_name].offset
-                    raise SceneError(f"{part._label()}: the point {end.end_name!r} is at {end.offset} and at {held}")
-        self._cache["rigid points"] = found
-        return dict(found)
+        declared = ((body, point) for body in self.bodies if isinstance(body, RigidBody) for point in body.points)
+        known = (body.point(point) for body, point in declared)
+        return dict(self._once("rigid points", lambda: self._with_those_of_ends(RigidPoint, known)))
 
     @property
     def space_points(self) -> dict[str, SpacePoint]:
@@ -214,18 +208,19 @@ class Scene:
         SceneError
             If one name stands for two places.
         """
-        known = self._cache.get("space points")
-        if known is not None:
-            return dict(known)
-        bodies = [part for part in self.parts if isinstance(part, SpaceBody)]
-        found = {f"{body.name}.{name}": SpacePoint(body, name) for body in bodies for name in body.offsets}
-        for part in self.parts if bodies else ():
+        spaces = (body for body in self.bodies if isinstance(body, SpaceBody))
+        known = (SpacePoint(body, name) for body in spaces for name in body.offsets)
+        return dict(self._once("space points", lambda: self._with_those_of_ends(SpacePoint, known)))
+
+    def _with_those_of_ends(self, kind: type[_Point], known: Iterable[_Point]) -> dict[str, _Point]:
+        """Points by name, and those of the kind that parts refer to."""
+        found = {point.end_name: point for point in known}
+        for part in self.parts if self.is_mechanism else ():
             for end in part.ends():
-                if isinstance(end, SpacePoint) and found.setdefault(end.end_name, end).offset != end.offset:
+                if isinstance(end, kind) and found.setdefault(end.end_name, end).offset != end.offset:
                     held = found[end.end_name].offset
                     raise SceneError(f"{part._label()}: the point {end.end_name!r} is at {end.offset} and at {held}")
-        self._cache["space points"] = found
-        return dict(found)
+        return found
 
     # -- motions ------------------------------------------------------------------------------------------------
     @property

@@ -6,12 +6,11 @@ from dataclasses import KW_ONLY, dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from fricmb.errors import SceneError, shown
-from fricmb.scene._axes import check_axis, check_ends, direction
+from fricmb.scene._axes import check_ends, direction
 from fricmb.scene._element import Element
 from fricmb.scene._forms import LinearForm
-from fricmb.scene._guided_way import along, along_rate, guide_coordinates, is_on_guide, take_guide
-from fricmb.scene._joints import Prismatic
-from fricmb.scene._one_coordinate import ANGLE, one_coordinate
+from fricmb.scene._guided_way import along, along_rate, check_way, guide_coordinates
+from fricmb.scene._one_coordinate import ANGLE
 from fricmb.scene._part import GROUND, End
 from fricmb.scene._rigid import angle_of
 from fricmb.scene._rigid_stops import RigidBacklash, RigidStop
@@ -72,13 +71,7 @@ class _Touching(Element):
 
     def _check_axis(self) -> None:
         """Refuse an axis that is not accepted, and take what a joint stands for."""
-        if isinstance(self.axis, Prismatic):
-            take_guide(self, self.axis)
-        if is_on_guide(self):
-            return
-        b, axis = one_coordinate(self, self.a, self.b, self.axis)
-        self._set("b", b)
-        self._set("axis", axis if axis == ANGLE else check_axis(self, "axis", axis))
+        check_way(self)
 
     def coordinate(self, x: Any, rates: Any, functions: Any) -> tuple[Any, Any]:
         """What is limited, and its rate, of the local coordinates; ``functions``: NumPy or SymPy."""
