@@ -62,7 +62,8 @@ def reasons():
     mechanisms = failure_text.failure_text, failure_text._none_found
     impacts = Impacts._piles_up, Impacts._apply, Impacts._is_sound
     calls = _calls._said, _calls._unknown, _calls._unnamed
-    for function in (*calls, *mechanisms, *impacts, memory.Footprint.excess, stop.Watch.look, not_there, *BLAME):
+    memories = memory.Footprint.excess, memory.no_room, memory.refused
+    for function in (*calls, *mechanisms, *impacts, *memories, stop.Watch.look, not_there, *BLAME):
         for node in ast.walk(ast.parse(textwrap.dedent(inspect.getsource(function)))):
             text = text_of(node.value) if isinstance(node, ast.Return | ast.Assign) else None
             if text and text.strip("."):

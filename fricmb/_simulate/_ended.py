@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from fricmb.errors import IntegrationError, Interrupted
+from fricmb.integrate.run.memory import refused
 from fricmb.integrate.run.stop import Watch, watching
 from fricmb.solution import Solution
 
 
-def run_watched(watch: Watch, run: Callable[[], Solution]) -> Solution:
-    """The solution that ``run`` returns, under a watch.
+def run_watched(watch: Watch, run: Callable[[], Solution], method: str, t_start: float) -> Solution:
+    """The solution that ``run`` returns, under a watch; ``method`` and ``t_start`` are for messages.
 
     Raises
     ------
     IntegrationError
-        Where the run could not go on, or a limit was reached.
+        Where the run could not go on, a limit was reached, or the system gave no more memory.
     Interrupted
         After Ctrl-C; what a handler of the user's own raises is raised as it is.
     """
@@ -28,6 +29,10 @@ def run_watched(watch: Watch, run: Callable[[], Solution]) -> Solution:
         if not isinstance(watch.cause, KeyboardInterrupt):
             raise watch.cause from error
         raise error.passed_on(Interrupted) from None
+    except MemoryError as error:
+        reason = refused(error)
+        said = f"{method} stopped: {reason}"
+        raise IntegrationError(said, t=t_start, reason=reason) from None
     if watch.cause is not None:  # it came while the last step was made
         if not isinstance(watch.cause, KeyboardInterrupt):
             raise watch.cause

@@ -21,6 +21,7 @@ from fricmb.errors import IntegrationError
 from fricmb.integrate import MotionSamples, Trajectory
 from fricmb.integrate.problem import LAW_COEFFICIENT, Floats
 from fricmb.integrate.run.chunked_run import KeptTrajectory
+from fricmb.integrate.run.memory import BEGINS
 from fricmb.integrate.run.touches import own_run, without_touches
 from fricmb.solution import LooksFor, Piece, Run, Solution, Stats
 
@@ -68,7 +69,7 @@ def make_solution(
     else:
         t = trajectory.ends[1]
         reason, end = f"{failure}{jumping_rate(mechanics)}", t
-    if not ended:
+    if not (ended or reason.startswith(BEGINS)):
         digits = "".join(f"; {note}" for note in digit_notes(trajectory, None))
         around = blame(mechanics, trajectory, t) or circumstances(mechanics, trajectory, reason)
         reason = undefined(mechanics, trajectory, t) or f"{reason}{around}{digits}"
@@ -117,13 +118,15 @@ def _sound_part(
     mechanics: SceneMechanics, trajectory: Trajectory, stats: Stats, span: Span, end: float | None,
     asked: LooksFor | None,
 ) -> Solution | None:  # fmt: skip
-    """The run up to ``end``, or as far as it is sound; None where it never is."""
+    """The run up to ``end``, or as far as it is sound; None where it never is, or finds no room in memory."""
     while end is not None:
         times = None if span.t_eval is None else span.t_eval[span.t_eval <= end]
         try:
             return _solution(mechanics, trajectory, stats, end, times if times is None or times.size else None, asked)
         except _Unsound as unsound:
             end = unsound.end if unsound.end is not None and unsound.end < end else None
+        except MemoryError:
+            return None
     return None
 
 

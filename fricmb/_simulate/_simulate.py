@@ -164,6 +164,7 @@ def simulate(
         with progress_bar(progress, span.t_start, span.t_end) as forward:
             options = {"tolerance": tolerance, "step": fixed, "progress": forward}
             sol = run_watched(
-                watch, lambda: run(keep, chosen.integrator, chosen.problem, start, span, finish, **options)
-            )
+                watch, lambda: run(keep, chosen.integrator, chosen.problem, start, span, finish, **options),
+                chosen.name, span.t_start,
+            )  # fmt: skip
         return differentiated(sol, asked)

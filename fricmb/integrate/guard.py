@@ -46,6 +46,7 @@ class Guard(Integrator):
                 return run
             why = f"{self.name} stopped at t = {run.end.t:.6g}: {run.failure}; {other.name} did the run"
             notes = (why,)
+            del run  # where it found no room for its rows
         instead = other.integrate(problem, start, t_end, **options)
         instead.counters = replace(instead.counters, notes=(*instead.counters.notes, *notes))
         instead.instead = (other.name, why)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from fricmb.integrate.compile.exchange import put_zeros, with_arrays
 from fricmb.integrate.integrator import Integrator, Tolerance
 from fricmb.integrate.problem import SLIP, Floats, Problem, Start
+from fricmb.integrate.run.memory import lengthen
 from fricmb.integrate.run.stop import ended, in_slices
 from fricmb.integrate.signals.longest_steps import steps_of_run
 from fricmb.integrate.suits_taylor import fastest
@@ -50,6 +52,11 @@ FAILURES = {
 }
 #: A friction curve over less than this part of the largest speed is that of a law without a slope.
 NARROW = 1e-10
+#: Bytes that tables of twice the length take beside those there are, per byte of these: the others are let go, and
+#: values at the rows are found by steps that are made again, in tables twice as long (and something is left).
+GROWTH = 6.0
+#: What to do where tables find no room.
+ADVICE = "on_chunk= keeps less, and method='auto' or 'radau' may take longer steps"
 
 
 def degree_for(rtol: float) -> int:
@@ -109,8 +116,9 @@ class Taylor(Integrator):
                 net = with_arrays(net, **{**empty, "times": np.ascontiguousarray(t_eval, dtype=float)})
             settle_start(net, start.mode is not None)
             marks = Checkpoints(problem.n)
-            code, net = run(net, marks, (t_end - start.t) / 100.0, progress)
-            done = _trajectory(problem, net, degree, marks, code, t_eval)
+            code, net, short = run(net, marks, (t_end - start.t) / 100.0, progress)
+            failure = None if code == DONE else ended() or short or failure_text(problem, net, code)
+            done = _trajectory(problem, net, degree, marks, failure, t_eval)
             if net.groups.work[LEAST] >= 0.0:
                 return done
         driving = find_driving(problem, done, done.steps, tolerance.rtol)
@@ -162,8 +170,10 @@ def set_start(
     return net
 
 
-def run(net: Net, marks: Checkpoints, every: float, progress: Callable[[float], None] | None) -> tuple[int, Net]:
-    """Drive to the end; checkpoints are taken where the steps of a stride are done."""
+def run(
+    net: Net, marks: Checkpoints, every: float, progress: Callable[[float], None] | None
+) -> tuple[int, Net, str | None]:
+    """Drive to the end, or to where rows find no room and why; checkpoints are taken where a stride is done."""
     marks.add(net)
     report = float(net.time) + every
     while True:
@@ -174,10 +184,14 @@ def run(net: Net, marks: Checkpoints, every: float, progress: Callable[[float], 
                 report += every
                 progress(float(net.time))
         elif code == FULL and ended() is None:
-            events = _longer(net.events, int(net.n_events) + len(net.mode))
-            net = with_arrays(net, events=events, steps=_longer(net.steps, int(net.n_steps)))
+            steps = int(net.n_steps)
+            wanted = GROWTH * float(net.events.nbytes + net.steps.nbytes)
+            longer, short = lengthen(partial(_more_rows, net), wanted, "taylor", steps, ADVICE)
+            if longer is None:
+                return code, net, short
+            net = with_arrays(net, **longer)
         else:
-            return code, net
+            return code, net, None
 
 
 def failure_text(problem: Problem, net: Net, code: int) -> str:
@@ -189,6 +203,12 @@ def failure_text(problem: Problem, net: Net, code: int) -> str:
         contact = problem.contact_names[problem.contacts.of_row[row]]
         return FAILURES[TOO_STEEP].format(contact=contact, range=2.0 * narrow[at])
     return FAILURES[code].format(limit=int(net.limit))
+
+
+def _more_rows(net: Net) -> dict[str, Floats]:
+    """Tables of events and steps with space for more."""
+    events = _longer(net.events, int(net.n_events) + len(net.mode))
+    return {"events": events, "steps": _longer(net.steps, int(net.n_steps))}
 
 
 def _longer(table: Floats, wanted: int) -> Floats:
@@ -204,7 +224,7 @@ def _drives(problem: Problem, driving: Driving) -> str:
 
 
 def _trajectory(
-    problem: Problem, net: Net, degree: int, marks: Checkpoints, code: int, t_eval: Floats | None
+    problem: Problem, net: Net, degree: int, marks: Checkpoints, failure: str | None, t_eval: Floats | None
 ) -> TaylorRun:
     events = net.events[: net.n_events].copy()
     events[:, 1] = problem.contacts.of_row[events[:, 1].astype(int)]
@@ -215,6 +235,5 @@ def _trajectory(
         mode=net.mode[problem.contacts.row[:-1]],
         direction=net.sigma.copy(),
     )  # fmt: skip
-    failure = None if code == DONE else ended() or failure_text(problem, net, code)
     kept = None if t_eval is None else samples_of(problem, net, slice(0, int(net.n_samples)))
     return TaylorRun(problem, degree, net.steps[:steps].copy(), events, counters, end, failure, marks.held, kept)

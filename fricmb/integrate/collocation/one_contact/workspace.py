@@ -29,7 +29,7 @@ from fricmb.integrate.compile.lanes import padded
 from fricmb.integrate.compile.parallel_compile import load_blocks
 from fricmb.integrate.compile.piece import Pattern
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.problem import Floats, Problem
+from fricmb.integrate.problem import Floats, Ints, Problem
 from fricmb.integrate.run.stop import ended
 
 #: Tables by step size; arrays by block or dof, and numbers of a run.
@@ -102,6 +102,13 @@ def lengthened(held: Rows) -> Rows | None:
                 return None
             new[: len(old)][i : i + lines] = old[i : i + lines]
     return longer
+
+
+def filled(held: Rows, used: Ints) -> float:
+    """Bytes of rows that have been filled; ``used``: how many steps, phases and events."""
+    steps, phases, events = used.tolist()
+    counts = (steps, steps, phases, events)
+    return float(sum(count * array[:1].nbytes for count, array in zip(counts, held, strict=True)))
 
 
 def may_grow(held: Rows, memory: float | None) -> bool:
