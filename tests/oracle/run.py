@@ -18,6 +18,8 @@ from .slow import leap
 #: Slip speeds in two directions, over the scale, at which it is decided whether a contact sticks.
 NEAR = 1e-9
 LIMIT = 3000
+#: Load of a contact, beside the forces that act, that is round-off.
+NO_LOAD = 1e-12
 #: Part of the run within which what happens happens at one instant.
 SAME = 1e-11
 
@@ -221,7 +223,8 @@ class Run:
 
     def record(self, before: list[tuple[int, float]]) -> None:
         """Transitions between the modes before and those now."""
-        for c, (m0, s0), m1, s1 in zip(self.p.contacts, before, self.modes, self.signs, strict=True):
+        now = zip(self.p.contacts, before, self.modes, self.signs, strict=True)
+        for i, (c, (m0, s0), m1, s1) in enumerate(now):
             if c.force is not None:
                 continue
             kind = None
@@ -233,10 +236,16 @@ class Run:
                 kind = "stick"
             elif m0 == STICK and m1 == SLIP:
                 kind = "slip"
-            elif m0 == m1 == SLIP and c.d == 1 and s0 != s1:
+            elif m0 == m1 == SLIP and c.d == 1 and s0 != s1 and self.bears(i):
                 kind = "reversal"
             if kind:
                 self.motion.events.append(Transition(self.t, c.name, kind))
+
+    def bears(self, i: int) -> bool:
+        """Whether contact i has a load beyond the round-off of the forces that act; without one nothing turns round."""
+        field, q, v = self.field(), self.y[: self.n], self.y[self.n : 2 * self.n]
+        field.evaluate(self.t, self.y)
+        return bool(field.load[i] > NO_LOAD * np.abs(field.given(self.t, q, v)).max())
 
     # -- between decisions ------------------------------------------------------------------------------------------
     def segment(self) -> None:

@@ -44,6 +44,9 @@ FOUND = {
     ("modes", 31387): "the same where two contacts rub",
     ("roller", 206): "a load passed through 0, and round-off of its friction was taken for slip that turns round",
     ("roller", 120004): "slip that sets out under falling friction: growth that was over within one step",
+    ("guided", 750013): "velocities no longer changed in Newton's method, but a force that tells its direction did",
+    ("excursions", 750010): "slip that begins without acceleration was taken to end at once",
+    ("tree", 750018): "the oracle's own: slip without a load but round-off was told to turn round",
     ("stack", 3005): "Taylor steps: plates went with a belt whose velocity jumps",
 }
 

@@ -6,8 +6,9 @@ import numpy as np
 
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.formulas.crossing import evaluate, first_crossing, narrowed
+from fricmb.integrate.implicit.equations.slip_rows import slip_speed
 from fricmb.integrate.implicit.events.event_functions import gaps, violated
-from fricmb.integrate.implicit.events.triggers import friction, grain, is_gap, kind_of, load, owner, triggers
+from fricmb.integrate.implicit.events.triggers import friction, grain, is_gap, is_slip, kind_of, load, owner, triggers
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.scene.control import Control
 from fricmb.integrate.implicit.scene.moving import Moving
@@ -38,15 +39,23 @@ def by_polynomial(st: Stages, out: Watch, j: int, h: float) -> tuple[float, floa
 
 @kernel
 def from_touch(st: Stages, out: Watch, j: int, h: float, rate: float) -> float:
-    """Where a distance that is 0 at the start of a step h, and opens at a rate, vanishes again; -1 where it does not.
+    """Where what is 0 at the start of a step h, and rises at a rate, vanishes again; -1 where it does not.
 
-    By the polynomial of the distance over the time, without the root at the start: hops may be far shorter than steps.
-    At a rate of 0 an acceleration opens it; the slope of the distance itself is round-off there, and may be below 0.
+    By its polynomial over the time, without the root at the start: hops may be far shorter than steps.  At a rate of 0
+    it rises by the next derivative; the slope is round-off there, and may be below 0.
     """
     for i in range(st.tab.c.shape[0]):
         out.values[i] = out.inner[i + 1, j] / st.tab.c[i]
     x = first_crossing(st.tab, max(rate, 0.0) * h, out.values, out.series)
     return x * h if 0.0 < x <= 1.0 else -1.0
+
+
+@kernel
+def rate_at_start(mech: Mech, out: Watch, j: int, y: State) -> float:
+    """Rate of the distance or slip of trigger j at the start of a step; 0 for others, that of a distance as last told."""
+    if is_gap(mech, j):
+        return float(out.rate[owner(mech, j)])
+    return slip_speed(mech.port.row, owner(mech, j), y.n, y.F, y.ga) if is_slip(mech, j, y) else 0.0
 
 
 @kernel
@@ -108,7 +117,7 @@ def locate_trigger(
         gaps(mech, k, y.t, y.q, y.v, y.lam, out)
     triggers(mech, k, out, y.mode, y.n, y.F, y.N, y.g, y.lam, True)
     j = first
-    opens = out.rate[owner(mech, first)] if is_gap(mech, first) else 0.0
+    rises = rate_at_start(mech, out, first, y)
     low, f_low = 0.0, max(out.trigger[j], 0.0)
     high, f_high = h, min(out.inner[st.tab.c.shape[0], j], 0.0)
     moved = 0
@@ -117,8 +126,9 @@ def locate_trigger(
     # where friction ends or begins; loads that set in or bend are found from both sides
     exact = kind_of(mech, first) == FRICTION or is_gap(mech, first)
     guess, slope = by_polynomial(st, out, first, h) if inside >= 1.0 and exact else (-1.0, 0.0)
-    if is_gap(mech, first) and out.inner[0, first] <= 10.0 * grain(mech, out, first, y):
-        guess, slope = from_touch(st, out, first, h, opens), 0.0
+    begins = is_gap(mech, first) or (is_slip(mech, first, y) and inside >= 1.0)
+    if begins and out.inner[0, first] <= 10.0 * grain(mech, out, first, y):
+        guess, slope = from_touch(st, out, first, h, rises), 0.0
     of_series = has_series(st)
     for i in range(80):
         root = by_series(mech, k, end, st, out, j, low, high) if of_series and kind_of(mech, j) <= LOAD else -1.0

@@ -32,6 +32,7 @@ from fricmb.integrate.implicit.stages.steep_laws import (
     try_next,
 )
 from fricmb.integrate.implicit.stages.turning import correct_turns, spread_of_stages
+from fricmb.integrate.model.law_values import magnitude
 from fricmb.integrate.problem import LAW_CONSTANT, LAW_SMOOTH, NORMAL_CONSTANT, SLIP
 
 
@@ -175,6 +176,28 @@ def apply_change(st: Stages) -> float:
     return change + sound
 
 
+#: Part by which a change of a force whose direction is found counts beside one of a velocity: near rest velocities are
+#: known as much better.
+FOUND = 1e-3
+
+
+@kernel
+def found_change(mech: Mech, st: Stages) -> float:
+    """The largest change in R of a force that tells the direction of its slip, as a part of it.
+
+    Across a direction in which nothing moves such a force changes no velocity at once, but the direction of all.
+    """
+    most, row = 0.0, mech.port.row
+    for k in range(st.turns.near):
+        c = st.turns.contact[k]
+        place = st.V.shape[1] + st.lam.shape[1]
+        for i in range(st.F.shape[0]):
+            size = magnitude(row, c, st.F[i])
+            for a in range(row[c], row[c + 1] if size > 0.0 else row[c]):
+                most = max(most, abs(st.R[i, place + a]) / size)
+    return most
+
+
 @block
 def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, made: float, accuracy: float) -> int:
     """Newton from the values in ``st`` until changes of velocities and states are below ``accuracy`` of their sizes.
@@ -207,7 +230,7 @@ def iterate_stages(mech: Mech, k: Moving, y: State, st: Stages, h: float, made: 
         if steep:
             slopes_at_stages(mech, k, st.steep, y.mode, st.z, st.N)
             correct_slopes(mech, st.steep, tab, st.R, st.w)
-        change = apply_change(st)
+        change = max(apply_change(st), FOUND * found_change(mech, st))
         if not change < 1e30:
             return 0
         if steep:
