@@ -60,7 +60,7 @@ def test_a_run_of_gigabytes_is_asked_for_on_a_terminal(monkeypatch, tmp_path, ca
         def readline(self):
             return answer
 
-    monkeypatch.setattr(_run, "LARGE", 1e3)
+    monkeypatch.setattr(_run, "LARGE", 1.0)
     monkeypatch.setattr(sys, "stdin", Terminal())
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
     assert main([*RUN, "--no-plots", "--out", str(tmp_path)]) == 0
@@ -71,7 +71,7 @@ def test_a_run_of_gigabytes_is_asked_for_on_a_terminal(monkeypatch, tmp_path, ca
 
 @pytest.mark.parametrize("asked", [[], ["--yes"]])
 def test_elsewhere_the_run_is_kept_and_its_table_only_if_it_was_asked_for(monkeypatch, tmp_path, capsys, asked):
-    monkeypatch.setattr(_run, "LARGE", 1e3)
+    monkeypatch.setattr(_run, "LARGE", 1.0)
     assert main([*RUN, "--no-plots", "--json", *asked, "--out", str(tmp_path)]) == 0
     out, err = capsys.readouterr()
     assert json.loads(out)["scene"]

@@ -124,4 +124,4 @@ def test_friction_of_a_contact_that_has_just_closed_opposes_slip(method: str, rt
         g, F, N = after.relative_velocity("c")[0][slips], after.force("c")[0][slips], after.normal_force("c")[slips]
         assert slips.sum() > 20
         assert (N > 0.0).all()
-        assert (-F * np.sign(g) >= 0.3 * N).all()
+        assert (-F * np.sign(g) >= 0.3 * N * (1.0 - 1e-14)).all()

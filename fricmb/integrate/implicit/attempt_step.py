@@ -30,7 +30,7 @@ from fricmb.integrate.implicit.equations.singular_position import (
 )
 from fricmb.integrate.implicit.equations.slip_rows import slip_speed
 from fricmb.integrate.implicit.events.event_functions import has_come_to_rest, violated
-from fricmb.integrate.implicit.events.event_location import last_unique, locate_trigger
+from fricmb.integrate.implicit.events.event_location import goes_before_jump, last_unique, locate_trigger
 from fricmb.integrate.implicit.events.load_kinks import find_kinks
 from fricmb.integrate.implicit.events.triggers import kind_of, owner
 from fricmb.integrate.implicit.modes.transition import change_modes
@@ -47,6 +47,7 @@ from fricmb.integrate.implicit.stages.one_step import (
     error_of,
     has_joints,
     remember,
+    step_to,
     takes_slopes,
     try_step,
 )
@@ -351,7 +352,10 @@ def attempt_step(
         may_have_passed(mech, k, w, end, out, h)
     else:
         trigger = has_come_to_rest(mech, k, out, y, end)
+    before_jump = goes_before_jump(mech, k, w, y, end, st, c, out, h, trigger)
     record_step(mech, rec, y, end, st, c, h)
+    if before_jump and not step_to(mech, k, w, y, end, st, c, h):
+        return FAIL_STEP
     if h == left:
         end.t = goal
     remember(c, y, st, h)

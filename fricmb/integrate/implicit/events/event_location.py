@@ -10,6 +10,7 @@ from fricmb.integrate.implicit.equations.slip_rows import slip_speed
 from fricmb.integrate.implicit.events.event_functions import gaps, violated
 from fricmb.integrate.implicit.events.triggers import friction, grain, is_gap, is_slip, kind_of, load, owner, triggers
 from fricmb.integrate.implicit.modes.uniqueness import margins
+from fricmb.integrate.implicit.output.recorder import copy_state
 from fricmb.integrate.implicit.scene.control import Control
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
@@ -52,7 +53,7 @@ def from_touch(st: Stages, out: Watch, j: int, h: float, rate: float) -> float:
 
 @kernel
 def rate_at_start(mech: Mech, out: Watch, j: int, y: State) -> float:
-    """Rate of the distance or slip of trigger j at the start of a step; 0 for others, that of a distance as last told."""
+    """Rate of the slip of trigger j at the start y of a step, of a distance where it was last told; 0 for others."""
     if is_gap(mech, j):
         return float(out.rate[owner(mech, j)])
     return slip_speed(mech.port.row, owner(mech, j), y.n, y.F, y.ga) if is_slip(mech, j, y) else 0.0
@@ -177,6 +178,29 @@ def locate_trigger(
         value = min(value, 0.0) if beyond else value
         low, f_low, high, f_high, moved = narrowed(low, f_low, high, f_high, moved, step, value, beyond)
     return step, j
+
+
+#: Roundings of the time by which a state is told to be before a jump.
+AHEAD = 16.0
+
+
+@kernel
+def goes_before_jump(
+    mech: Mech, k: Moving, w: Instant, y: State, end: State, st: Stages, c: Control, out: Watch, h: float, j: int
+) -> bool:
+    """Whether trigger j, at whose zero the step h ends, jumps there; ``end`` is moved to the side before it then.
+
+    A force that appears at a touch lets go of what rests by a jump: located, the step may end on either side, and the
+    row of what still holds would show a force far over its limit.
+    """
+    held = j >= 0 and kind_of(mech, j) == FRICTION and not is_slip(mech, j, y)
+    if not held or out.trigger[j] >= -out.hair * out.top_force:
+        return False
+    shorter = h - AHEAD * EPS * max(abs(y.t), abs(h))
+    if shorter > 0.0:
+        return bool(step_to(mech, k, w, y, end, st, c, shorter))
+    copy_state(y, end)
+    return True
 
 
 @kernel
