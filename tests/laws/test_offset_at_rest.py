@@ -14,6 +14,8 @@ import fricmb as fm
 
 STATIC, KINETIC, N, MASS, K = (0.3, 0.8), (0.2, 0.5), 10.0, 2.0, 30.0
 LAW = fm.laws.Offset.by_sense(mu_s=STATIC, mu_k=KINETIC)
+#: How far the program looks for an event at a time: what lies behind one is done again.
+AHEAD = 0.5
 #: Phases of the loads on blocks in a row.
 PHASES = (0.0, 1.0, 2.5)
 
@@ -49,7 +51,8 @@ def own_row(n, t_end):
         if not -STATIC[1] * N <= pull <= STATIC[0] * N:
             modes[i] = 1 if pull > 0.0 else -1
     while True:
-        out = solve_ivp(rates, (t, t_end), y, rtol=1e-12, atol=1e-14, dense_output=True, max_step=4e-3, method="DOP853")
+        until = min(t + AHEAD, t_end)
+        out = solve_ivp(rates, (t, until), y, rtol=1e-12, atol=1e-14, dense_output=True, max_step=4e-3, method="DOP853")
         found = []
         for i in range(n):
             values = np.array([spare(i, *at) for at in zip(out.t, out.y.T, strict=True)])
@@ -58,7 +61,10 @@ def own_row(n, t_end):
                 low, high = out.t[below[0]], out.t[below[0] + 1]
                 found.append((brentq(lambda s, i=i, f=out.sol: spare(i, s, f(s)), low, high, xtol=1e-15), i))
         if not found:
-            return out.y[:, -1], events
+            t, y = until, out.y[:, -1]
+            if t == t_end:
+                return y, events
+            continue
         t, i = min(found)
         y = out.sol(t)
         y[n + i] = 0.0
