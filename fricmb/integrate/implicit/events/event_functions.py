@@ -148,6 +148,22 @@ def is_smooth(mech: Mech, k: Moving, j: int, y: State, st: Stages) -> bool:
 
 
 @kernel
+def limit_of(mech: Mech, k: Moving, c: int, N: Floats) -> float:
+    """What friction of port c can hold."""
+    return stick_limit(mech.port, mech.port.laws, c, k.s, max(N[c], 0.0))
+
+
+@kernel
+def squared(left: float, limit: float) -> float:
+    """``limit^2 - F^2`` of a force F that has ``left`` to its limit.
+
+    Limit and force are magnitudes, with a kink where a reaction passes through 0, and in the plane as good as one where
+    it passes near it.  Polynomials would lead past the break-away there; squares have none, and the same sign.
+    """
+    return float(left * (2.0 * limit - left))
+
+
+@kernel
 def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, shared: bool) -> int:
     """The trigger that first falls below 0 between the stages of a step from y alone, or -1; ``out.where`` then.
 
@@ -159,17 +175,20 @@ def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, share
         jumps = shared and kind_of(mech, j) <= LOAD and y.mode[c] == STICK and may_share(mech, c)
         if jumps or not is_smooth(mech, k, j, y, st):
             continue
+        held = False
         if is_slip(mech, j, y) or is_gap(mech, j):
             hair = 10.0 * grain(mech, out, j, y)
         else:
             # of what friction can hold; in a short step forces of stages are round-off of velocities over the step
             held = kind_of(mech, j) == FRICTION
-            size = stick_limit(mech.port, mech.port.laws, c, k.s, max(y.N[c], 0.0)) if held else out.top_force
+            size = limit_of(mech, k, c, y.N) if held else out.top_force
             hair = out.hair * size + 2.0 * abs(out.trigger[j] - out.rough[j])
         for i in range(st.tab.c.shape[0]):
-            out.values[i] = out.inner[i + 1, j] + hair
+            value = out.inner[i + 1, j] + hair
+            out.values[i] = squared(value, limit_of(mech, k, c, st.N[i]) + hair) if held else value
         # what begins at 0 rises from there, whatever the polynomial makes of its first moment
         first = out.inner[0, j] + hair if out.inner[0, j] > hair else 0.0
+        first = squared(first, size + hair) if held else first
         _, below = first_below(st.tab, first, out.values, out.series)
         if below < out.where:
             found = j
