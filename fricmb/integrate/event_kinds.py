@@ -1,11 +1,13 @@
 """Kinds of event: each is stated once, here, and its number is its place in the table.
 
-To add a kind of event that ``radau`` and ``bdf`` locate: its row, and its number by name, before ``EVENT_ASKED``; a
-trigger, a function that falls below 0 where a step has to end, as the head of ``implicit/events/triggers`` says; and
-what happens there in ``implicit/attempt_step``.  (What is known without a trigger is put down where it is known, by
-``run/mode_changes.record_event``.)  Nothing else lists kinds.  What tells events of one instant once (``told_once`` and
-``touches`` in ``run``), counts, saves, exports or differentiates them, and the docstring of ``Event``, read this table.
-``collocation`` and ``taylor`` locate transitions in files of their own, and put down no other kinds.
+To add a kind of event that ``radau`` and ``bdf`` locate: its row, and its number by name, before ``EVENT_ASKED`` (those
+before it are counted contact by contact); a trigger, a function that falls below 0 where a step has to end, as the head
+of ``implicit/events/triggers`` says; and what happens there in ``implicit/attempt_step``. What is known without a
+trigger is put down where it is known, by ``run/mode_changes.record_event``. One such event a step has its space; for
+more of them ask ``crowded`` in ``implicit/output/recorder`` to keep it. Nothing else lists kinds. What tells events of
+one instant once (``told_once`` and ``touches`` in ``run``), counts, saves, exports or differentiates them, and the
+docstring of ``Event``, read this table. ``collocation`` and ``taylor`` locate transitions in files of their own, and
+put down no other kinds.
 """
 
 from __future__ import annotations
@@ -19,8 +21,8 @@ import numpy as np
 class EventKind:
     """The ``name`` by which users know a kind, and what it ``says`` has happened.
 
-    ``transition``: what a contact does changes.  What is none leaves the run as it is: it makes no pair with a
-    transition, and its time has a derivative only where a user has asked for it.  ``impact``: it has a row among
+    ``transition``: what a contact does changes. A kind that is no transition leaves the run as it is: it makes no pair
+    with a transition, and its time has a derivative only where a user has asked for it. ``impact``: it has a row among
     ``Transitions.impacts``.
     """
 

@@ -17,7 +17,7 @@ from fricmb.integrate.implicit.events.load_kinks import mark_bends
 from fricmb.integrate.implicit.modes.mode_decision import decide, mark_rest
 from fricmb.integrate.implicit.modes.mode_enumeration import FOUND, SEVERAL
 from fricmb.integrate.implicit.modes.mode_trial import most_light
-from fricmb.integrate.implicit.modes.transition import bring_to_rest, least_held, let_go, take_given
+from fricmb.integrate.implicit.modes.transition import bring_to_rest, least_held, open_joint, take_given
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.output.recorder import Record, crowded
 from fricmb.integrate.implicit.scene.control import Control
@@ -98,7 +98,7 @@ def begin(
         worst = least_held(mech, y, False)
         if worst < 0:
             break
-        code = let_go(mech, k, w, y, out, worst)
+        code = open_joint(mech, k, w, y, out, worst)
         if code != DONE:
             return FAIL_SINGULAR if code == FAIL_SINGULAR else FAIL_LOST
         mark_rest(mech, y, small, part)

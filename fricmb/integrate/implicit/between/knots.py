@@ -30,7 +30,7 @@ NOWHERE = 2.0
 
 
 @kernel
-def has_knots(ports: LawsWithKnots, y: AtContacts, k: int) -> bool:
+def slips_with_knots(ports: LawsWithKnots, y: AtContacts, k: int) -> bool:
     """Whether contact k slips under a law with knots."""
     return bool(y.mode[k] == SLIP and ports.knot_start[k + 1] > ports.knot_start[k])
 
@@ -86,7 +86,7 @@ def knot_ahead(
     """Part of the step h just solved up to the first knot that its polynomials do not know; ``NOWHERE`` without one."""
     found = NOWHERE
     for k in range(y.mode.shape[0]):
-        if has_knots(ports, y, k):
+        if slips_with_knots(ports, y, k):
             found = min(found, contact_knot(ports, laws, s, tab, y, w, felt, tolerance, k, h))
     return found
 
@@ -106,7 +106,7 @@ def beside_knots(
     before = c[last - 1] if last > 0 else 0.0
     worst = 0.0
     for k in range(y.mode.shape[0]):
-        if not has_knots(ports, y, k):
+        if not slips_with_knots(ports, y, k):
             continue
         worst = max(worst, missed(ports, laws, s, tab, y, w, felt, tolerance, k, 0, 0.0, c[0], h))
         worst = max(worst, missed(ports, laws, s, tab, y, w, felt, tolerance, k, last, 1.0, before - 1.0, h))
@@ -138,7 +138,7 @@ def bends_between(
 ) -> bool:
     """Whether slip passes a knot between y and ``end``, a step of BDF, where the law bends enough to matter."""
     for k in range(y.mode.shape[0]):
-        if not has_knots(ports, y, k):
+        if not slips_with_knots(ports, y, k):
             continue
         r0, r1 = magnitude(ports.row, k, y.g), magnitude(ports.row, k, end.g)
         load = max(y.N[k], end.N[k], felt.least[k])

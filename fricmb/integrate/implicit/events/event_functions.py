@@ -9,8 +9,8 @@ from fricmb.integrate.implicit.equations.forces import call_joint, is_open, move
 from fricmb.integrate.implicit.equations.jacobian_layers import place_slope
 from fricmb.integrate.implicit.equations.slip_rows import lack, may_open, plane, slip_speed
 from fricmb.integrate.implicit.events.triggers import (
+    first_behind_joints,
     first_joint,
-    first_kink,
     grain,
     is_gap,
     is_slip,
@@ -170,7 +170,7 @@ def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, share
     ``shared``: contacts in loops share their load anew, by forces that jump between two stages.
     """
     found = -1
-    for j in range(first_kink(mech)):
+    for j in range(first_behind_joints(mech)):
         c = owner(mech, j)
         jumps = shared and kind_of(mech, j) <= LOAD and y.mode[c] == STICK and may_share(mech, c)
         if jumps or not is_smooth(mech, k, j, y, st):
@@ -180,7 +180,7 @@ def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, share
             hair = 10.0 * grain(mech, out, j, y)
         else:
             # of what friction can hold; in a short step forces of stages are round-off of velocities over the step
-            held = kind_of(mech, j) == FRICTION
+            held = kind_of(mech, j) == FRICTION and y.mode[c] == STICK and mech.port.law[c] != LAW_SMOOTH
             size = limit_of(mech, k, c, y.N) if held else out.top_force
             hair = out.hair * size + 2.0 * abs(out.trigger[j] - out.rough[j])
         for i in range(st.tab.c.shape[0]):

@@ -7,13 +7,20 @@
 | JOINT | joint | the reaction of one that only presses; the distance of one that is open | as above; ``impacts`` |
 | KINK | port | see ``load_kinks`` | nothing: polynomials end there |
 
-To add a trigger: its kind behind the others in ``scene/watch``, with space for what it remembers (set at the start of a
-run by ``begin`` in ``time_loop``), and its value for each port in ``triggers``, n_c places behind that of the kind
-before it.  It is measured as a force, unless ``grain`` says otherwise, and is seen at the ends and stages of steps, not
-between these.  What happens at it is said in ``attempt_step`` beside KINK, where ``y`` is the state at it; an event is
-put down there by ``record_event(rec, y.t, owner(mech, trigger), EVENT_...)``.  A function that has passed 0 would end
-every step from there on: what goes on looks to the other side, by a sign that it remembers.  Nothing else knows kinds:
-``event_functions`` and ``event_location`` find any trigger, and ``bdf`` leaves the step around one to ``attempt_step``.
+To add a trigger: its kind behind the others in ``scene/watch`` (the number of triggers follows), with space for what it
+remembers, set by ``begin`` in ``time_loop``, last of all, as loads change until then; and its value for each port in
+``triggers``, n_c places behind that of the kind before it: ``out.trigger[behind + n_c + c]`` of the first one added. It
+is measured as a force, unless ``grain`` says otherwise, and is seen at the ends and stages of steps, not between these.
+What happens at it is said in ``attempt_step`` beside KINK, where ``y`` is the state at it; an event is put down there
+by ``record_event(rec, y.t, owner(mech, trigger), EVENT_...)``, and no polynomial through the step is kept (``c.last_h =
+c.made = 0``), which may be tiny. A function that has passed 0 would end every step from there on: what goes on looks to
+the other side, by a sign that it remembers and turns at each passage; ``y`` itself may be on either side, within
+round-off. Forces jump where modes change, at breakpoints and at impacts: a trigger that may be below 0 when a step
+begins is looked for at the head of ``attempt_step``, since no shorter step would find where it has passed.
+
+No other file needs to know a new kind: ``event_functions`` and ``event_location`` find any trigger, and ``bdf`` leaves
+the step around one to ``attempt_step``. A port, c in kernels of triggers, is a contact or a joint with friction; events
+call it contact, by the same number.
 """
 
 from __future__ import annotations
@@ -37,8 +44,8 @@ def first_joint(mech: Mech) -> int:
 
 
 @kernel
-def first_kink(mech: Mech) -> int:
-    """The trigger of the first kink: from it on there is one of each kind a port, and none ends a mode."""
+def first_behind_joints(mech: Mech) -> int:
+    """The first trigger behind those of joints: from it on there is one of each kind a port, and none ends a mode."""
     return int(first_joint(mech) + mech.joint.port.shape[0])
 
 
@@ -47,9 +54,9 @@ def kind_of(mech: Mech, j: int) -> int:
     """Kind of trigger j, -1 where j is none."""
     if j < first_joint(mech):
         return -1 if j < 0 else (LOAD if j % 2 == 1 else FRICTION)
-    if j < first_kink(mech):
+    if j < first_behind_joints(mech):
         return JOINT
-    return int(KINK + (j - first_kink(mech)) // mech.port.joint.shape[0])
+    return int(KINK + (j - first_behind_joints(mech)) // mech.port.joint.shape[0])
 
 
 @kernel
@@ -57,9 +64,9 @@ def owner(mech: Mech, j: int) -> int:
     """The port of trigger j, of a JOINT its joint."""
     if j < first_joint(mech):
         return j // 2
-    if j < first_kink(mech):
+    if j < first_behind_joints(mech):
         return int(j - first_joint(mech))
-    return int((j - first_kink(mech)) % mech.port.joint.shape[0])
+    return int((j - first_behind_joints(mech)) % mech.port.joint.shape[0])
 
 
 @kernel
@@ -74,11 +81,11 @@ def triggers(
     at_end: bool,
 ) -> None:  # fmt: skip
     """All triggers, into ``out.trigger``; ``at_end`` of a step, where distances of open joints are known."""
-    joints, kinks = first_joint(mech), first_kink(mech)
+    joints, behind = first_joint(mech), first_behind_joints(mech)
     for c in range(mode.shape[0]):
         out.trigger[2 * c] = friction(mech, k, out, mode, direction, F, N, g, c)
         out.trigger[2 * c + 1] = load(mech, mode, N, c)
-        out.trigger[kinks + c] = kink(mech, k, out, N, g, lam, c)
+        out.trigger[behind + c] = kink(mech, k, out, N, g, lam, c)
     for j in range(out.gap.shape[0]):
         out.trigger[joints + j] = lam[mech.joint.row[j]] if mech.joint.one_sided[j] else 1.0
         if is_open(mech, j):

@@ -11,7 +11,7 @@ from fricmb.integrate.implicit.modes.load_share import join_rest
 from fricmb.integrate.implicit.modes.mode_decision import decide
 from fricmb.integrate.implicit.modes.mode_enumeration import FOUND, SEVERAL
 from fricmb.integrate.implicit.modes.mode_trial import ARRIVES, RESTED, SLIPS_ON
-from fricmb.integrate.implicit.modes.transition import bears, least_held, let_go, set_out_anew, turn_with_slip
+from fricmb.integrate.implicit.modes.transition import bears, least_held, open_joint, set_out_anew, turn_with_slip
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.output.recorder import Record, copy_state
 from fricmb.integrate.implicit.scene.control import Control
@@ -70,7 +70,7 @@ def go_on(
         worst = least_held(mech, y, True)
         if worst < 0:
             break
-        code = let_go(mech, k, w, y, out, worst)
+        code = open_joint(mech, k, w, y, out, worst)
         if code != DONE:
             return code
     c.growth = 1e300

@@ -12,7 +12,7 @@ from fricmb.integrate.implicit.modes.load_share import mark_loops
 from fricmb.integrate.implicit.modes.mode_enumeration import ENUMERATED, FOUND, NO_SOLUTION, enumerate_modes
 from fricmb.integrate.implicit.modes.mode_trial import (
     ARRIVES,
-    LETS_GO,
+    IN_LOOP,
     RESTED,
     SLIPS_ON,
     at_rest,
@@ -39,7 +39,7 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
 
     Sticking first (a joint that is at its limit already stays there where another breaks away; contacts in loops share
     what they hold); the port that is furthest beyond its limit is released against its force, one that would slip the
-    wrong way, or is held by others, sticks again.  What LETS_GO in ``part`` does not stick.  One that comes to rest is
+    wrong way, or is held by others, sticks again.  What IN_LOOP in ``part`` does not stick.  One that comes to rest is
     released before those that have rested: more friction at rest than in slip lets several combinations hold,
     and what has stuck lets go only where it has to.  Where that does not settle, every combination is tried; many ports
     let go one after the other (``release_in_turn``, ``release_in_plane``).
@@ -50,15 +50,15 @@ def decide(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int
     mark_loops(mech, k, w, y, part)
     freely = forced < 0
     for c in range(n_c):
-        freely = freely and part[c] != LETS_GO
+        freely = freely and part[c] != IN_LOOP
         # what has rested goes on from the forces that held it, as what is elastic does
         anew = anew and not (at_rest(mech, y, c, part) and y.mode[c] == STICK)
     for c in range(n_c):
         if at_rest(mech, y, c, part):
             count += 1
-            if part[c] != LETS_GO:
+            if part[c] != IN_LOOP:
                 part[c] = RESTED if y.mode[c] == STICK else ARRIVES
-            if c == forced or part[c] == LETS_GO:
+            if c == forced or part[c] == IN_LOOP:
                 release(mech, k, y, c)
             elif freely or y.mode[c] == STICK or plane(mech, c):
                 hold(mech, y, c, anew)
@@ -116,13 +116,13 @@ def find_wrong(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced:
     for c in range(y.mode.shape[0]):
         if at_rest(mech, y, c, part):
             beyond = wrong(mech, k, y, c, scale)
-            if (c == forced or part[c] == LETS_GO) and y.mode[c] != STICK and beyond < 1e-6:
+            if (c == forced or part[c] == IN_LOOP) and y.mode[c] != STICK and beyond < 1e-6:
                 beyond = 0.0
             first = worst < 0 or part[c] < part[worst]
             if beyond > 0.0 and (first or (part[c] == part[worst] and beyond > most)):
                 worst, most = c, beyond
     for c in range(y.mode.shape[0] if worst < 0 else 0):
-        if at_rest(mech, y, c, part) and c != forced and part[c] != LETS_GO and still(mech, k, y, c, scale):
+        if at_rest(mech, y, c, part) and c != forced and part[c] != IN_LOOP and still(mech, k, y, c, scale):
             return c
     return worst
 

@@ -11,7 +11,7 @@ from fricmb.integrate.implicit.equations.friction_share import react_by_shares
 from fricmb.integrate.implicit.equations.slip_rows import plane, slip_speed
 from fricmb.integrate.implicit.modes.mode_trial import (
     CREEP_IN_LOOPS,
-    LETS_GO,
+    IN_LOOP,
     at_rest,
     ease,
     hold,
@@ -67,7 +67,7 @@ def enumerate_modes(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, co
     n_c = y.mode.shape[0]
     found, kept, most, released = 0, -1, -1, False
     for c in range(n_c):
-        released = released or part[c] == LETS_GO
+        released = released or part[c] == IN_LOOP
     for number in range(3**count + 1):
         # the last round returns to what was found
         code, twice = number, False
@@ -95,9 +95,9 @@ def enumerate_modes(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, co
             if not at_rest(mech, y, c, part):
                 continue
             stuck += 1 if y.mode[c] == STICK else 0
-            if part[c] == LETS_GO and y.mode[c] != STICK:
+            if part[c] == IN_LOOP and y.mode[c] != STICK:
                 moves = moves or slip_speed(mech.port.row, c, y.n, y.F, y.ga) > CREEP_IN_LOOPS * scale
-            if wrong(mech, k, y, c, scale) > 0.0 or (part[c] != LETS_GO and still(mech, k, y, c, scale)):
+            if wrong(mech, k, y, c, scale) > 0.0 or (part[c] != IN_LOOP and still(mech, k, y, c, scale)):
                 holds = False
         holds = holds and moves
         if holds and number < 3**count and released and stuck != most:

@@ -26,8 +26,8 @@ from fricmb.integrate.model.law_values import magnitude, point_along
 from fricmb.integrate.problem import LAW_SMOOTH, OPEN, SLIP, STICK, Codes
 
 #: What a port does at the instant decided on: it slips on (or is open), comes to rest, has rested; LENT to rest while
-#: round-off of its slip is taken away (``transition``); LETS_GO with the others of a loop.
-SLIPS_ON, ARRIVES, RESTED, LENT, LETS_GO = 0, 1, 2, 3, 4
+#: round-off of its slip is taken away (``transition``); IN_LOOP with the others of a loop.
+SLIPS_ON, ARRIVES, RESTED, LENT, IN_LOOP = 0, 1, 2, 3, 4
 #: Round-off of forces beside the limit of sticking.
 SLACK = 1e-10
 #: Round-off of slip accelerations beside the largest: in trees, and in loops, whose Jacobians are softened.

@@ -16,7 +16,7 @@ from fricmb.integrate.implicit.equations.accelerations import react
 from fricmb.integrate.implicit.equations.slip_rows import friction_coefficient, guided
 from fricmb.integrate.implicit.modes.load_share import Loops
 from fricmb.integrate.implicit.modes.loop_mobility import mobility
-from fricmb.integrate.implicit.modes.mode_trial import LETS_GO, at_rest, release
+from fricmb.integrate.implicit.modes.mode_trial import IN_LOOP, at_rest, release
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import Instant, State
@@ -59,7 +59,7 @@ def furthest_beyond(mech: Mech, taken: Codes, radius: Floats, limit: Floats, F: 
 def release_in_plane(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int) -> bool:
     """Modes, forces and directions of all ports at rest; False where loads follow from friction.
 
-    ``forced`` (or -1), and what LETS_GO in ``part``, has let go already.
+    ``forced`` (or -1), and what IN_LOOP in ``part``, has let go already.
     """
     if not has_own_limits(mech, y, part):
         return False
@@ -83,7 +83,7 @@ def release_in_plane(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, f
         slips[c] = friction_coefficient(mech, k, c, 0.0, load)[0] * load
     rim = NO_RIM * limit.max()
     for c in range(n_c):
-        radius[c] = slips[c] if c == forced or part[c] == LETS_GO else rim
+        radius[c] = slips[c] if c == forced or part[c] == IN_LOOP else rim
     worst = 0
     while worst >= 0:
         if not least_energy(rows, free, taken, radius, scale, steep, F):

@@ -17,7 +17,7 @@ from fricmb.integrate.implicit.equations.accelerations import react
 from fricmb.integrate.implicit.equations.forces import directions
 from fricmb.integrate.implicit.equations.slip_rows import friction_coefficient, guided
 from fricmb.integrate.implicit.modes.loop_mobility import mobility, rank
-from fricmb.integrate.implicit.modes.mode_trial import LETS_GO, at_rest
+from fricmb.integrate.implicit.modes.mode_trial import IN_LOOP, at_rest
 from fricmb.integrate.implicit.scene.moving import Moving
 from fricmb.integrate.implicit.scene.problem_structs import Mech
 from fricmb.integrate.implicit.scene.state import Instant, State
@@ -128,7 +128,7 @@ def find_forces(
         load = max(y.N[c], 0.0)
         most[i] = stick_limit(mech.port, mech.port.laws, c, k.s, load)
         least[i] = friction_coefficient(mech, k, c, 0.0, load)[0] * load
-        state[i] = WITHIN if c == forced or part[c] == LETS_GO else FREE
+        state[i] = WITHIN if c == forced or part[c] == IN_LOOP else FREE
         b[i] = y.ga[mech.port.row[c]]
         for j in range(count):
             D[i, j] = whole[mech.port.row[c], mech.port.row[rows[j]]]
@@ -151,7 +151,7 @@ def find_forces(
 def release_in_turn(mech: Mech, k: Moving, w: Instant, y: State, part: Codes, forced: int) -> bool:
     """Modes and directions of all ports at rest; False where loads follow from friction, or some are redundant.
 
-    ``forced`` (or -1), and what LETS_GO in ``part``, has let go already.
+    ``forced`` (or -1), and what IN_LOOP in ``part``, has let go already.
     """
     rows = np.zeros(part.shape[0], np.int64)
     state = np.zeros(list_resting(mech, y, part, rows), np.int8)

@@ -14,7 +14,7 @@ from fricmb.integrate.implicit.events.triggers import kind_of, owner
 from fricmb.integrate.implicit.modes.load_share import give_way, join_rest
 from fricmb.integrate.implicit.modes.mode_decision import decide
 from fricmb.integrate.implicit.modes.mode_enumeration import FOUND, SEVERAL
-from fricmb.integrate.implicit.modes.mode_trial import ARRIVES, LENT, LETS_GO, RESTED, SLIPS_ON
+from fricmb.integrate.implicit.modes.mode_trial import ARRIVES, IN_LOOP, LENT, RESTED, SLIPS_ON
 from fricmb.integrate.implicit.modes.uniqueness import margins
 from fricmb.integrate.implicit.output.recorder import Record, copy_state
 from fricmb.integrate.implicit.scene.control import Control
@@ -52,7 +52,7 @@ def least_held(mech: Mech, y: State, may_open: bool) -> int:
 
 
 @kernel
-def let_go(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, i: int) -> int:
+def open_joint(mech: Mech, k: Moving, w: Instant, y: State, out: Watch, i: int) -> int:
     """Open joint i where contact is lost, if it is declared so; an open one that has come back ends the run."""
     joint = mech.joint
     row = joint.row[i]
@@ -130,7 +130,7 @@ def meet_jump(mech: Mech, k: Moving, w: Instant, y: State, size: float) -> bool:
 def bring_to_rest(mech: Mech, k: Moving, w: Instant, y: State, part: Codes) -> bool:
     """Take the round-off of slip away from what sticks, and from what has been at rest and sets out from there."""
     for i in range(part.shape[0]):
-        if part[i] in (ARRIVES, RESTED, LETS_GO) and y.mode[i] == SLIP and not plane(mech, i):
+        if part[i] in (ARRIVES, RESTED, IN_LOOP) and y.mode[i] == SLIP and not plane(mech, i):
             y.mode[i] = STICK
             part[i] = LENT
     done = project_velocities(mech, k, w, y, False, True)
@@ -191,7 +191,7 @@ def change_modes(
     turn_with_slip(mech, k, y, out.top_slip, port)
     copy_state(y, before)
     if kind == JOINT:
-        code = let_go(mech, k, w, y, out, owner(mech, j))
+        code = open_joint(mech, k, w, y, out, owner(mech, j))
         if code != DONE:
             return code
     set_window(c, k.s.window, y.t)
@@ -209,7 +209,7 @@ def change_modes(
             point_along(row, port, y.g, 1.0, y.n)
             part[port] = ARRIVES if magnitude(row, port, y.g) <= 1e-11 * out.top_slip else SLIPS_ON
     elif kind == FRICTION and y.mode[port] == STICK:
-        forced = -1 if give_way(mech, k, w, y, part, LETS_GO) else port
+        forced = -1 if give_way(mech, k, w, y, part, IN_LOOP) else port
     elif kind == FRICTION and (plane(mech, port) or y.n[row[port]] * y.g[row[port]] >= -1e-11 * out.top_slip):
         part[port] = ARRIVES
     elif kind == FRICTION:

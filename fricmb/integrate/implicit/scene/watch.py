@@ -81,17 +81,18 @@ class Watch(Layout):
 def watch_of(problem: Problem, stages: int) -> Watch:
     """Arrays for the problem and steps of so many stages; no joint is open."""
     m = mechanism_of(problem)
-    count = (len(KINDS) - 1) * problem.n_c + len(m.joints.port)
-    columns = m.n_rows * int(mech_of(problem).order.sizes[3])
+    n_c, n_j, rows = problem.n_c, len(m.joints.port), m.n_rows
+    count = (len(KINDS) - 1) * n_c + n_j
+    columns = rows * int(mech_of(problem).order.sizes[3])
     return Watch(
-        np.ones(problem.n_c), 1.0, np.zeros(MANY, np.int64), np.zeros(MANY * MANY), np.zeros(MANY * MANY),
-        np.zeros(4, np.int32), np.zeros(MANY, np.int32),
-        0.0, 0.0, 0, 0.0, 0.0, 0.0, np.random.default_rng(1).standard_normal(m.n_rows), np.zeros(columns),
-        0.0, np.zeros(m.n_rows), np.zeros(columns), np.ones(count),
-        np.ones((stages + 1, count)), np.ones(count), 1.0, np.zeros(stages),
-        np.zeros(stages + 1), np.zeros(len(m.joints.port)), np.zeros(len(m.joints.port)), np.zeros(len(m.joints.port)),
-        np.zeros(len(m.joints.port)),
-        0, np.zeros(len(m.joints.port), np.int64),
-        np.zeros(problem.n_c, np.int64), np.zeros(m.n_rows + 1), np.zeros(m.n_rows + 1), 0.0, 0.0, 0.0,
-        np.zeros(m.n_rows + 1), np.zeros(problem.n_c), 0.0, 0.0,
+        margin=np.ones(n_c), together=1.0, contacts=np.zeros(MANY, np.int64), A=np.zeros(MANY * MANY),
+        B=np.zeros(MANY * MANY), sizes=np.zeros(4, np.int32), pivots=np.zeros(MANY, np.int32),
+        sigma=0.0, sigma_top=0.0, redundant=0, sigma_before=0.0, sigma_h=0.0, sigma_rate=0.0,
+        weak=np.random.default_rng(1).standard_normal(rows), reactions=np.zeros(columns),
+        sigma_end=0.0, weak_end=np.zeros(rows), reactions_end=np.zeros(columns),
+        trigger=np.ones(count), inner=np.ones((stages + 1, count)), rough=np.ones(count), where=1.0,
+        values=np.zeros(stages), series=np.zeros(stages + 1),
+        gap=np.zeros(n_j), rate=np.zeros(n_j), grain=np.zeros(n_j), least=np.zeros(n_j), opened=0,
+        bends=np.zeros(n_j, np.int64), kinked=np.zeros(n_c, np.int64), kink=np.zeros(rows + 1), side=np.zeros(rows + 1),
+        top_slip=0.0, top_force=0.0, top_position=0.0, lam=np.zeros(rows + 1), missed=np.zeros(n_c), hair=0.0, slow=0.0,
     )  # fmt: skip
