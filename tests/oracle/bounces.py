@@ -189,6 +189,10 @@ class Program(Modes):
         members, rested = sorted({*members, *ending}), [self.rests(i) for i in range(self.k)]
         self.y = y.copy()
         self.y[self.n :] = self.behind(members, ending)
+        if ending and left == 0.0:  # hops that are none: what they would rise by goes
+            rows = np.array([self.p.surfaces[i].row(y[: self.n]) for i in ending])
+            rises = np.array([self.speeds(t, self.y, i)[1] for i in ending])
+            self.y[self.n :] -= self.inverse @ rows.T @ np.linalg.lstsq(rows @ self.inverse @ rows.T, rises)[0]
         for i in members:
             rests = abs(self.speeds(t, self.y, i)[1]) <= NONE
             rested[i] = rested[i] or not rests
@@ -206,6 +210,9 @@ class Program(Modes):
             if len(self.hits[i]) < 4:
                 continue
             c, d, e = np.diff(self.hits[i][-4:])
+            if e <= 4e-16 * self.t and d < SHORT:  # hops no longer than a rounding of the time
+                gaps, rates = zip(*(self.speeds(self.t, self.y, j)[:2] for j in range(self.k)), strict=True)
+                return 0.0, frozenset(j for j in range(self.k) if abs(gaps[j]) <= 1e-12 and abs(rates[j]) <= CALM)
             if min(c, d) <= 0.0:
                 continue
             ratio, before = float(e / d), float(d / c)
