@@ -21,9 +21,9 @@ from fricmb.integrate.compile.band import (
 from fricmb.integrate.compile.kernel import entry
 from fricmb.integrate.compile.lapack import load_lapack
 from fricmb.integrate.compile.room import room
+from fricmb.integrate.formulas.backward_differences import best_order
 from fricmb.integrate.formulas.step_control import ladder, step_factor
 from fricmb.integrate.formulas.tableau import by_line, largest_in_step, radau
-from fricmb.integrate.implicit.bdf.backward_differences import best_order
 from fricmb.integrate.model.law_values import along, magnitude, point_along
 from fricmb.integrate.problem import Complexes, Complexes2, Floats, Floats2, Ints, Pivots
 from fricmb.integrate.run.breakpoints import next_stop, reached, set_window, set_window_around
@@ -92,9 +92,9 @@ def rung(x: float, rungs: int) -> float:
 
 
 @entry
-def order_of(k: int, lower: float, error: float, higher: float, out: Floats) -> int:
+def order_of(k: int, lower: float, error: float, higher: float, more: int, out: Floats) -> int:
     """The order that goes fastest, and by what."""
-    order, out[0] = best_order(k, lower, error, higher)
+    order, out[0] = best_order(k, lower, error, higher, more)
     return order
 
 
@@ -214,8 +214,9 @@ def test_the_order_that_goes_fastest():
         errors = 10.0 ** rng.uniform(-6, 2, 3)
         errors[0] = np.inf if k == 1 else errors[0]
         errors[2] = np.inf if rng.uniform() < 0.3 else errors[2]
-        factors = {k + i: 0.9 * errors[1 + i] ** (-1.0 / (k + i)) for i in (-1, 0, 1) if k + i > 0}
-        order = order_of(k, *errors, out)
+        more = int(rng.integers(0, 2))
+        factors = {k + i: 0.9 * errors[1 + i] ** (-1.0 / (k + i + more)) for i in (-1, 0, 1) if k + i > 0}
+        order = order_of(k, *errors, more, out)
         assert factors[order] == max(factors.values())
         assert out[0] == pytest.approx(factors[order])
 
