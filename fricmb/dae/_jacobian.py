@@ -107,7 +107,7 @@ class Differences:
         What then has no effect at all is algebraic; no unit of its own tells how large a derivative will be.
         """
         m, p = self.matrix, self.matrix.pattern
-        left = np.arange(p.n)
+        left = np.flatnonzero(~self._without_effect(t, y, yp, f))
         for _ in range(FURTHER):
             effect = np.zeros(p.n)
             np.maximum.at(effect, m.columns, np.abs(m.dyp[p.place]) * rate[m.columns] / self._level(y, yp, f)[p.rows])
@@ -124,6 +124,16 @@ class Differences:
                 if not (fine and np.isfinite(m.dyp[entries[3]]).all()):
                     m.dyp[entries[3]] = before
                     left = np.setdiff1d(left, columns)
+
+    def _without_effect(self, t: float, y: Floats, yp: Floats, f: Floats) -> Any:
+        """Which derivatives (n,) change no digit of the residual however far they are moved, one group at a time."""
+        none, out = np.zeros(len(y), dtype=bool), np.empty_like(f)
+        for columns in self.matrix.pattern.groups:
+            there = yp.copy()
+            there[columns] += FURTHEST
+            self.calls += 1
+            none[columns] = self.residual(t, y, there, out) and bool((out == f).all())
+        return none
 
     def _drowned(self, y: Floats, yp: Floats, f: Floats, size: Floats, c: float) -> Any:
         """Columns whose largest effect is not well above the round-off of the equations it is in."""

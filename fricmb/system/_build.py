@@ -24,6 +24,7 @@ from fricmb.system._gravity import add_gravity
 from fricmb.system._inputs import forces_of, inputs_of
 from fricmb.system._leaps import leaps_of
 from fricmb.system._lined import Chosen, add_lines, choose
+from fricmb.system._lost import check_digits
 from fricmb.system._mechanism import build_mechanism
 from fricmb.system._motions import Signals
 from fricmb.system._series import series_of
@@ -159,6 +160,7 @@ def _problem(
     linear, elements = structure.arrays(n_u)
     if not structure.has_plain_masses:
         _check_mass(linear, dofs)
+    check_digits(structure.stores, structure.lined.stores, linear.csr("Kx").diagonal()[:n], structure.motions.dofs)
     contacts, contact_arrays = touching
     table = signals.table.build(n, n_u)
     problem = Problem(
