@@ -46,6 +46,7 @@ FOUND = {
     ("roller", 120004): "slip that sets out under falling friction: growth that was over within one step",
     ("guided", 750013): "velocities no longer changed in Newton's method, but a force that tells its direction did",
     ("excursions", 750010): "slip that begins without acceleration was taken to end at once",
+    ("feet", 770012): "two feet that let go together, and hold again, within a step: their shares passed for round-off",
     ("drives", 750044): "a lossy gear that holds did not let go where its load passes through 0 between stages",
     ("tree", 750018): "the oracle's own: slip without a load but round-off was told to turn round",
     ("stack", 3005): "Taylor steps: plates went with a belt whose velocity jumps",

@@ -107,13 +107,29 @@ def violated(mech: Mech, k: Moving, w: Instant, out: Watch, y: State, end: State
     for j in range(out.trigger.shape[0]):
         # forces of stages are of lower order, and in a short step the round-off of velocities over the step: at its end
         # those that follow from accelerations show by how much
-        rough = 0.0 if is_gap(mech, j) else 2.0 * abs(out.trigger[j] - out.rough[j])
+        exact = is_gap(mech, j) or is_shared(mech, y, end, j)
+        rough = 0.0 if exact else 2.0 * abs(out.trigger[j] - out.rough[j])
         limit = 10.0 * grain(mech, out, j, end)
         for i in range(s):
             value = out.inner[i + 1, j] + (rough if i < s - 1 else 0.0)
             if value < -limit and value / max(limit, 1e-290) < least:
                 worst, least = j, value / max(limit, 1e-290)
-    return worst if worst >= 0 else first_between(mech, k, out, y, st, shared)
+    return worst if worst >= 0 else first_between(mech, k, out, y, end, st, shared)
+
+
+#: Steps shorter than this part of the time have forces at stages that are round-off of velocities.
+SHORT = 1e-6
+
+
+@kernel
+def is_shared(mech: Mech, y: State, end: State, j: int) -> bool:
+    """Whether trigger j is of what sticks in a loop: at the end of a step its share is another, not a better one.
+
+    What stages differ from the end by says nothing of their round-off then, which in all but short steps is none.
+    """
+    if kind_of(mech, j) != FRICTION or end.mode[owner(mech, j)] != STICK or not may_share(mech, owner(mech, j)):
+        return False
+    return bool(end.t - y.t > SHORT * abs(end.t))
 
 
 @kernel
@@ -164,7 +180,9 @@ def squared(left: float, limit: float) -> float:
 
 
 @kernel
-def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, shared: bool) -> int:
+def first_between(
+    mech: Mech, k: Moving, out: Watch, y: State, end: State, st: Stages, shared: bool
+) -> int:  # fmt: skip
     """The trigger that first falls below 0 between the stages of a step from y alone, or -1; ``out.where`` then.
 
     ``shared``: contacts in loops share their load anew, by forces that jump between two stages.
@@ -182,7 +200,8 @@ def first_between(mech: Mech, k: Moving, out: Watch, y: State, st: Stages, share
             # of what friction can hold; in a short step forces of stages are round-off of velocities over the step
             held = kind_of(mech, j) == FRICTION and y.mode[c] == STICK and mech.port.law[c] != LAW_SMOOTH
             size = limit_of(mech, k, c, y.N) if held else out.top_force
-            hair = out.hair * size + 2.0 * abs(out.trigger[j] - out.rough[j])
+            hair = out.hair * size
+            hair += 0.0 if is_shared(mech, y, end, j) else 2.0 * abs(out.trigger[j] - out.rough[j])
         for i in range(st.tab.c.shape[0]):
             value = out.inner[i + 1, j] + hair
             out.values[i] = squared(value, limit_of(mech, k, c, st.N[i]) + hair) if held else value
