@@ -12,7 +12,7 @@ import numpy as np
 
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.formulas.backward_differences import gammas, rows, square
+from fricmb.integrate.formulas.backward_differences import history
 from fricmb.integrate.problem import Floats, Floats2
 
 # requests of the stepper; below 0: it gave up, and why
@@ -95,8 +95,7 @@ def stepper(n: int, highest: int, longest: float, t_end: float) -> Stepper:
     vector = np.zeros(n)
     return room(
         Stepper(
-            D=rows(n), h=0.0, order=1, equal=0, d=vector.copy(), gamma=gammas(), U=square(), E=square(),
-            column=np.zeros(len(square())),
+            **history(n),
             y=vector.copy(), yp=vector.copy(), now=np.zeros(1), delta=vector.copy(), weight=vector.copy(),
             rate=vector.copy(),
             t=0.0, t_end=t_end, longest=longest,

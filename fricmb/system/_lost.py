@@ -60,9 +60,15 @@ def _suspects(
         k = np.abs(held.k)
         for i in np.flatnonzero((k > 0.0) & (k <= LOST * np.maximum(beside[held.a], beside[held.b]))).tolist():
             yield held.names[i], _lined(held, i)
-    for name, at in _each(stores):
+    for name, at in _each([store for store in stores if _may_be_lost(store, float(beside.max()))]):
         if any(0.0 < abs(k) <= LOST * beside[p] for p, k in at.items()):
             yield name, at
+
+
+def _may_be_lost(store: Store, most: float) -> bool:
+    """Whether the least of an element is nothing beside the largest of all: matrices of many entries are not walked."""
+    least = min((abs(k) for _, _, k in store.K if k != 0.0), default=np.inf)
+    return least * min((c * c for row in store.rows for _, c in row.q), default=1.0) <= LOST * most
 
 
 def _each(stores: Sequence[Store]) -> Iterator[tuple[str, dict[int, float]]]:

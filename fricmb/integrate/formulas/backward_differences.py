@@ -10,7 +10,7 @@ Source: L. F. Shampine, M. W. Reichelt, The MATLAB ODE Suite, SIAM J. Sci. Compu
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -40,19 +40,14 @@ class History(Protocol):
     column: Floats
 
 
-def gammas() -> Floats:
-    """The constants ``gamma`` of the formulas: 0, 1, 1 + 1/2, ..."""
-    return np.concatenate([[0.0], np.cumsum(1.0 / np.arange(1, MAX_ORDER + 2))])
-
-
-def rows(n: int) -> Floats2:
-    """Space for the differences of n signals: those that a formula uses, and two above for the order's choice."""
-    return np.zeros((MAX_ORDER + 3, n))
-
-
-def square() -> Floats2:
-    """Space for a matrix that takes differences to another step."""
-    return np.zeros((MAX_ORDER + 1, MAX_ORDER + 1))
+def history(n: int) -> dict[str, Any]:
+    """What a ``History`` of n signals holds, by name: rows for what a formula uses, and two for the order's choice."""
+    square = np.zeros((MAX_ORDER + 1, MAX_ORDER + 1))
+    gamma = np.concatenate([[0.0], np.cumsum(1.0 / np.arange(1, MAX_ORDER + 2))])
+    return {
+        "D": np.zeros((MAX_ORDER + 3, n)), "h": 0.0, "order": 0, "equal": 0, "d": np.zeros(n), "gamma": gamma,
+        "U": square, "E": square.copy(), "column": np.zeros(MAX_ORDER + 1),
+    }  # fmt: skip
 
 
 @kernel

@@ -9,7 +9,7 @@ import numpy as np
 from fricmb.integrate.compile.kernel import kernel
 from fricmb.integrate.compile.layout import Layout
 from fricmb.integrate.compile.room import room
-from fricmb.integrate.formulas.backward_differences import gammas, predicted, rescale, rows, shortened, square
+from fricmb.integrate.formulas.backward_differences import history, predicted, rescale, shortened
 from fricmb.integrate.problem import Floats, Floats2, Ints
 from fricmb.integrate.run.outcomes import ACCEPTED, CHANGED, HANDOVER, REJECTED
 
@@ -47,22 +47,16 @@ class Differences(Layout):
 
 def differences(n_y: int, span: float, cost: float) -> Differences:
     """Space for the history of a run over ``span``; ``cost`` of a one-step step, in steps of BDF."""
-    signal = np.zeros(n_y)
     return room(
         Differences(
-            D=rows(n_y),
-            h=0.0, order=0, equal=0, on=0, rejections=0, wait=0, waited=0, since=0, slower=0,
+            **history(n_y),
+            on=0, rejections=0, wait=0, waited=0, since=0, slower=0,
             good=0.0,
-            new=signal,
-            guess=signal.copy(),
-            d=signal.copy(),
-            gamma=gammas(),
+            new=np.zeros(n_y),
+            guess=np.zeros(n_y),
             # a hundredth of the error is spent on a hundredth of the run
             unit=100.0 / max(span, 1e-300),
             cost=cost,
-            U=square(),
-            E=square(),
-            column=np.zeros(8),
         )
     )
 
